@@ -1,0 +1,197 @@
+// The scene as it lies in a package and as shaders read it: one definition for compiler, player and GLSL.
+// Scalar layout. World space is glTF's: right-handed, +Y up, metres. Radiometry is SI, RGB linear Rec. 709.
+#ifndef FORMAT_GPU_SCENE_H
+#define FORMAT_GPU_SCENE_H
+#include "format/gpu_types.h"
+
+GPU_NAMESPACE_BEGIN
+
+GPU_CONST uint kNone = 0xffffffffu; // "no such index", wherever an index is optional
+
+// ---- Bounding volume hierarchy -------------------------------------------------------------------------------------
+
+GPU_CONST uint kBvhWidth = 4u;
+GPU_CONST uint kTraversalStackSize = 64u; // entries; the compiler builds no deeper tree, the reader refuses one
+
+// A child reference is kNone (no child: its bounds are empty, min > max), an inner node's index (greater than its
+// parent's: the tree is acyclic), or a leaf: kLeafBit | (triangle_count - 1) << kLeafCountShift | first BvhTriangle.
+GPU_CONST uint kLeafBit = 0x80000000u;
+GPU_CONST uint kLeafCountShift = 28u;
+GPU_CONST uint kLeafCountMask = 0x7u;         // 1..8 triangles a leaf
+GPU_CONST uint kLeafFirstMask = 0x0fffffffu;
+
+struct BvhNode // four children, bounds as structure of arrays: component i belongs to child[i]
+{
+    vec4 min_x;
+    vec4 max_x;
+    vec4 min_y;
+    vec4 max_y;
+    vec4 min_z;
+    vec4 max_z;
+    uvec4 child;
+};
+GPU_SIZE(BvhNode, 112);
+
+GPU_CONST uint kTriangleAlpha = 1u; // BvhTriangle.flags: alpha mask or blend: traversal must look at its coverage
+GPU_CONST uint kTriangleThin = 2u;  // thin-walled smooth transmission: shadow rays pass, tinted
+
+struct BvhTriangle // in leaf order; spatial splits may store one triangle several times
+{
+    vec3 v0; // metres, world space, counter-clockwise seen from the front
+    uint triangle; // index into Triangles
+    vec3 v1;
+    uint material; // index into Materials
+    vec3 v2;
+    uint flags;    // kTriangle*
+};
+GPU_SIZE(BvhTriangle, 48);
+
+// ---- Surfaces ------------------------------------------------------------------------------------------------------
+
+struct Triangle
+{
+    uvec3 vertices; // indices into VertexAttributes
+    uint light;     // index into Lights, kNone where the triangle does not emit
+};
+GPU_SIZE(Triangle, 16);
+
+struct VertexAttributes
+{
+    uint normal;  // octahedral, 2 x 16-bit snorm (packSnorm2x16), unit length, world space
+    uint tangent; // octahedral, x: bits 0..15 snorm16, y: bits 17..31 (snorm15 << 17), bit 16: set = bitangent sign -1;
+                  // 0x00000000 only together with no normal map
+    vec2 uv0;     // TEXCOORD_0, glTF convention (v down)
+    vec2 uv1;     // TEXCOORD_1
+    uvec2 color;  // COLOR_0, linear RGBA as 4 halfs (packHalf2x16(rg), packHalf2x16(ba)); 1 where absent
+};
+GPU_SIZE(VertexAttributes, 32);
+
+// Material.flags
+GPU_CONST uint kMaterialAlphaMask = 1u;   // coverage = alpha >= alpha_cutoff
+GPU_CONST uint kMaterialAlphaBlend = 2u;  // coverage = alpha
+GPU_CONST uint kMaterialDoubleSided = 4u; // emits on both sides; reflection is always two-sided
+GPU_CONST uint kMaterialUnlit = 8u;       // KHR_materials_unlit: shows base_color to the eye, takes no part in light transport
+GPU_CONST uint kMaterialThin = 16u;       // transmission > 0 without a volume: thin-walled, no refraction
+
+struct Material // glTF 2.0 metallic-roughness and the KHR_materials_* extensions the renderer honours
+{
+    vec3 base_color;
+    float alpha;        // baseColorFactor.a
+    vec3 emission;      // W/(m^2 sr): emissiveFactor x emissiveStrength, before its texture
+    float alpha_cutoff;
+    float metallic;
+    float roughness;    // perceptual; alpha_ggx = roughness^2
+    float normal_scale;
+    float transmission;
+    float ior;
+    float specular;     // KHR_materials_specular specularFactor
+    vec3 specular_color;
+    vec3 absorption;    // 1/m: -ln(attenuationColor) / attenuationDistance
+    uint flags;
+    uint base_color_texture; // the seven: index into TextureRefs or kNone
+    uint metallic_roughness_texture; // G roughness, B metallic
+    uint normal_texture;
+    uint emissive_texture;
+    uint transmission_texture;   // R
+    uint specular_texture;       // A
+    uint specular_color_texture; // sRGB
+};
+GPU_SIZE(Material, 112);
+
+GPU_CONST uint kTexturePageCount = 16u; // array textures a scene may use: one per size and encoding
+
+// TextureRef.sampling: bits 0-1 wrap u, bits 2-3 wrap v, bit 4 nearest, bit 5 use TEXCOORD_1
+GPU_CONST uint kWrapRepeat = 0u;
+GPU_CONST uint kWrapClamp = 1u;
+GPU_CONST uint kWrapMirror = 2u;
+GPU_CONST uint kSampleNearest = 16u;
+GPU_CONST uint kSampleUv1 = 32u;
+
+struct TextureRef // one use of a texture: which layer of which page, and how
+{
+    uint page;     // < kTexturePageCount
+    uint layer;
+    uint sampling;
+    vec3 u_row;    // u' = dot(u_row, vec3(u, v, 1)): KHR_texture_transform
+    vec3 v_row;
+};
+GPU_SIZE(TextureRef, 36);
+
+// ---- Lights --------------------------------------------------------------------------------------------------------
+
+GPU_CONST uint kLightPoint = 0u;
+GPU_CONST uint kLightSpot = 1u;
+GPU_CONST uint kLightDirectional = 2u;
+GPU_CONST uint kLightTriangle = 3u;         // emits on its front side
+GPU_CONST uint kLightTriangleTwoSided = 4u; // emits on both sides
+GPU_CONST uint kLightEnvironment = 5u;      // at most one, always the last light
+
+struct Light
+{
+    vec3 p0;       // point, spot: position. triangle: vertex 0
+    uint kind;     // kLight*
+    vec3 p1;       // spot, directional: unit vector, the way the light travels. triangle: vertex 1
+    uint triangle; // triangle: index into Triangles, else kNone
+    vec3 p2;       // spot: (cone_scale, cone_offset, 0), see below. triangle: vertex 2
+    float pmf;     // probability of being picked by the alias table; power / total power
+    vec3 emission; // point, spot: W/sr. directional: W/m^2. triangle: W/(m^2 sr) before texture. environment: factor
+    uint material; // triangle with an emissive texture: its material, else kNone
+};
+GPU_SIZE(Light, 64);
+// Spot falloff (KHR_lights_punctual): clamp(dot(p1, -wi) * cone_scale + cone_offset, 0, 1)^2 with
+// cone_scale = 1 / max(0.001, cos(inner) - cos(outer)), cone_offset = -cos(outer) * cone_scale.
+
+struct AliasEntry // Walker/Vose: pick i uniformly, keep it if a second uniform number < threshold, else take alias
+{
+    float threshold;
+    uint alias;
+};
+GPU_SIZE(AliasEntry, 8);
+
+// The environment is an equirectangular map: direction (x,y,z) -> u = 0.5 + atan2(z, x) / 2pi, v = acos(y) / pi,
+// row 0 at +Y. Radiance is bilinearly filtered (u repeats, v clamps). Importance is a coarser grid over the same (u,v):
+struct EnvironmentTexel
+{
+    float threshold;   // alias table over the texels, row-major
+    uint alias;
+    float probability; // of this texel; never 0 where filtered radiance is not
+};
+GPU_SIZE(EnvironmentTexel, 12);
+
+struct CausticTarget // bounding sphere of one specular object: where caustic photons are aimed
+{
+    vec3 center;
+    float radius;
+};
+GPU_SIZE(CausticTarget, 16);
+
+struct SceneInfo // uniform block: what every kernel may need to know of the scene
+{
+    vec3 bounds_min; // metres
+    uint light_count;
+    vec3 bounds_max;
+    uint environment_light; // index into Lights or kNone
+    uvec2 environment_importance_size; // texels; 0 without environment
+    uint caustic_target_count;
+    uint triangle_count;
+};
+GPU_SIZE(SceneInfo, 48);
+
+// ---- Descriptor set 0: the scene, the same for every kernel --------------------------------------------------------
+
+GPU_CONST uint kSceneInfoBinding = 0u;
+GPU_CONST uint kBvhNodesBinding = 1u;
+GPU_CONST uint kBvhTrianglesBinding = 2u;
+GPU_CONST uint kTrianglesBinding = 3u;
+GPU_CONST uint kVertexAttributesBinding = 4u;
+GPU_CONST uint kMaterialsBinding = 5u;
+GPU_CONST uint kTextureRefsBinding = 6u;
+GPU_CONST uint kLightsBinding = 7u;
+GPU_CONST uint kLightAliasesBinding = 8u;
+GPU_CONST uint kEnvironmentTexelsBinding = 9u;
+GPU_CONST uint kCausticTargetsBinding = 10u;
+GPU_CONST uint kTexturePagesBinding = 11u;  // sampler2DArray[kTexturePageCount]
+GPU_CONST uint kEnvironmentMapBinding = 12u; // sampler2D
+
+GPU_NAMESPACE_END
+#endif

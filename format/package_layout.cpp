@@ -1,0 +1,1 @@
+#include "format/package_layout.h"
