@@ -1,0 +1,18 @@
+// Light data: one list of all lights with their power alias table, and where caustic photons should be aimed.
+#pragma once
+#include "compiler/scene_data.h"
+
+struct LightTables
+{
+    std::vector<gpu::Light> lights;          // punctual, then emissive triangles, then the environment
+    std::vector<gpu::AliasEntry> aliases;    // [lights.size()]
+    std::vector<uint32_t> triangle_lights;   // [triangle_count] index into lights or gpu::kNone
+    std::vector<gpu::CausticTarget> caustic_targets;
+    uint32_t emissive_triangles = 0;
+    float total_power = 0; // W, luminance
+};
+
+/// Power: point 4 pi I; spot over its cone; directional E pi R^2 and environment pi R^2 x radiance integrated over the
+/// sphere, R the radius of the scene's bounding sphere; triangle pi A x mean emission (texture averaged over the
+/// triangle), twice that where it emits on both sides. Lights without power are left out.
+LightTables buildLights(const SceneData& scene);

@@ -1,0 +1,25 @@
+// Environment maps: reading .exr and .hdr, the default sky, and the importance grid.
+#pragma once
+#include "compiler/scene_data.h"
+#include "format/result.h"
+
+#include <filesystem>
+
+/// Reads an equirectangular map. Negative texels become 0; NaN or infinite ones are an error (kInvalid).
+Result<EnvironmentImage> loadEnvironment(const std::filesystem::path& path);
+
+/// The sky a scene without any light gets: smooth, blue above, grey-brown below. Stated in the report.
+EnvironmentImage defaultSky();
+/// The sun that goes with it.
+PunctualLight defaultSun();
+
+struct EnvironmentImportance
+{
+    uint32_t width = 0;
+    uint32_t height = 0;
+    std::vector<gpu::EnvironmentTexel> texels; // [width * height]
+    gpu::vec3 average_radiance{};              // over the sphere
+};
+
+/// Importance proportional to filtered luminance x solid angle, on a grid of at most 1024 x 512.
+EnvironmentImportance buildImportance(const EnvironmentImage& image);

@@ -1,0 +1,92 @@
+// What the compiler knows of a scene between reading glTF and writing the package.
+#pragma once
+#include "format/gpu_scene.h"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+/// Decoded texels, RGBA8, row 0 on top, as the file stores them (colour textures stay sRGB-encoded).
+struct TextureImage
+{
+    std::string name; // for messages
+    uint32_t width = 0;
+    uint32_t height = 0;
+    bool srgb = false;           // base colour, emissive, specular colour
+    std::vector<uint8_t> texels; // [4 * width * height]
+};
+
+/// One use of a texture by a material; becomes a gpu::TextureRef once images have found their page and layer.
+struct TextureUse
+{
+    uint32_t image = 0;    // index into SceneData::images
+    uint32_t sampling = 0; // gpu::kWrap*, kSampleNearest, kSampleUv1 as in gpu::TextureRef::sampling
+    gpu::vec3 u_row{1, 0, 0};
+    gpu::vec3 v_row{0, 1, 0};
+};
+
+/// All triangles of the scene in world space.
+struct WorldMesh
+{
+    std::vector<gpu::vec3> positions;              // [vertex_count] metres
+    std::vector<gpu::VertexAttributes> attributes; // [vertex_count]
+    std::vector<gpu::uvec3> triangles;             // [triangle_count] vertex indices
+    std::vector<uint32_t> materials;               // [triangle_count] index into SceneData::materials
+    std::vector<uint32_t> objects;                 // [triangle_count] which mesh node it came from, 0..object_count-1
+    uint32_t object_count = 0;
+};
+
+struct PunctualLight
+{
+    uint32_t kind = gpu::kLightPoint; // point, spot, directional
+    gpu::vec3 position{};             // metres, world
+    gpu::vec3 direction{0, 0, -1};    // unit, the way the light travels
+    gpu::vec3 intensity{};            // W/sr (point, spot) or W/m^2 (directional), colour included
+    float inner_cone = 0;             // radians, spot
+    float outer_cone = 0.785398163f;
+};
+
+/// Equirectangular radiance, mapping as in gpu_scene.h.
+struct EnvironmentImage
+{
+    uint32_t width = 0;
+    uint32_t height = 0;
+    std::vector<gpu::vec4> texels; // [width * height] W/(m^2 sr), row 0 at +Y, w unused (1)
+};
+
+struct CameraView
+{
+    std::string name;
+    gpu::vec3 position{};
+    gpu::vec3 forward{0, 0, -1}; // unit
+    gpu::vec3 up{0, 1, 0};       // unit, orthogonal to forward
+    float vertical_fov = 0;        // radians; 0: orthographic
+    float orthographic_height = 0; // metres; 0: perspective
+};
+
+/// Counts of what import and clean-up did; they end in the report and in Meta.statistics.
+struct ImportCounts
+{
+    uint64_t degenerate_triangles = 0;
+    uint64_t duplicate_triangles = 0;
+    uint64_t generated_normals = 0;  // vertices
+    uint64_t generated_tangents = 0; // vertices
+    uint64_t dropped_primitives = 0; // points and lines
+};
+
+struct SceneData
+{
+    std::string generator;
+    std::string copyright;
+    std::vector<std::string> warnings; // full sentences
+    WorldMesh mesh;
+    std::vector<gpu::Material> materials; // *_texture members index texture_uses
+    std::vector<std::string> material_names;
+    std::vector<TextureUse> texture_uses;
+    std::vector<TextureImage> images;
+    std::vector<PunctualLight> lights;
+    std::optional<EnvironmentImage> environment;
+    std::vector<CameraView> cameras;
+    ImportCounts counts;
+};
