@@ -98,6 +98,8 @@ struct Material // glTF 2.0 metallic-roughness and the KHR_materials_* extension
 };
 GPU_SIZE(Material, 112);
 
+GPU_CONST float kSmoothRoughness = 0.03; // below it a specular lobe is a perfect mirror or a perfect refraction
+
 GPU_CONST uint kTexturePageCount = 16u; // array textures a scene may use: one per size and encoding
 
 // TextureRef.sampling: bits 0-1 wrap u, bits 2-3 wrap v, bit 4 nearest, bit 5 use TEXCOORD_1

@@ -1,0 +1,34 @@
+// A view of the scene and the rays it sends.
+#pragma once
+#include "format/package_read.h"
+#include "shaders/primary/primary.h"
+
+#include <optional>
+#include <string>
+
+struct Camera
+{
+    std::string name;
+    gpu::vec3 position{};        // metres, world
+    gpu::vec3 forward{0, 0, -1}; // unit
+    gpu::vec3 up{0, 1, 0};       // unit, orthogonal to forward
+    float vertical_fov = 0.8f;   // radians; 0: orthographic
+    float orthographic_height = 0; // metres
+};
+
+std::vector<Camera> packageCameras(const package::Package& package);
+
+/// Finds a camera by its name, or by its index where no name matches.
+std::optional<Camera> findCamera(const std::vector<Camera>& cameras, const std::string& name_or_index);
+
+/// The camera named on the command line, or the first where `name_or_index` is empty.
+/// @return kUsage listing the cameras
+Result<Camera> chooseCamera(const package::Package& package, const std::string& name_or_index);
+
+/// What shaders/primary/generate.comp needs of it for a picture of width x height pixels; sampling fields are left 0.
+gpu::CameraParams cameraParams(const Camera& camera, uint32_t width, uint32_t height);
+
+gpu::vec3 operator+(gpu::vec3 a, gpu::vec3 b);
+gpu::vec3 operator*(float s, gpu::vec3 v);
+gpu::vec3 cross(gpu::vec3 a, gpu::vec3 b);
+gpu::vec3 normalize(gpu::vec3 v);

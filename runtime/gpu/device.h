@@ -1,0 +1,98 @@
+// The chosen device: makes kernels, buffers and images, and brings data in.
+#pragma once
+#include "format/result.h"
+#include "runtime/gpu/instance.h"
+#include "runtime/gpu/kernel.h"
+#include "runtime/gpu/memory.h"
+
+#include <cstring>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string_view>
+
+class Device
+{
+public:
+    /// @param index into Instance::devices(); the device must lack nothing
+    static Result<std::unique_ptr<Device>> create(const Instance& instance, uint32_t index, bool present);
+    ~Device();
+    Device(const Device&) = delete;
+    Device& operator=(const Device&) = delete;
+
+    /// "samples/assign" is shaders/samples/assign.comp. Aborts where there is no such kernel.
+    /// @param constants values of the kernel's specialization constants 0, 1, ...
+    Kernel kernel(std::string_view name, std::span<const uint32_t> constants = {}) const;
+
+    /// Device-local storage for `count` elements (at least one), filled with zeroes only by Recorder::clear.
+    /// Aborts when memory runs out; check canAllocate() before allocations that input decides.
+    template <typename T>
+    Buffer array(std::string_view name, uint64_t count) const
+    {
+        return buffer(name, (count > 0 ? count : 1) * sizeof(T), Placement::kDevice);
+    }
+    /// Host-visible memory that the GPU writes and the CPU reads.
+    Buffer readback(std::string_view name, uint64_t bytes) const { return buffer(name, bytes, Placement::kReadback); }
+
+    /// A device-local buffer with the given contents; waits until they are there.
+    template <typename T>
+    Buffer upload(std::string_view name, std::span<const T> data) const
+    {
+        return uploadBytes(name, std::as_bytes(data));
+    }
+    /// An image in shader-read layout; `data` is laid out level by level, layer by layer, tightly packed.
+    Image uploadImage(std::string_view name, const ImageShape& shape, std::span<const std::byte> data) const;
+
+    /// Copies a buffer's contents to the CPU; waits for the queue.
+    template <typename T>
+    std::vector<T> download(const Buffer& source, uint64_t count) const
+    {
+        std::vector<T> data(count);
+        downloadBytes(source, std::as_writable_bytes(std::span(data)));
+        return data;
+    }
+
+    void waitIdle() const { vulkanCheck(vkDeviceWaitIdle(device_)); }
+
+    VkDevice handle() const { return device_; }
+    VkPhysicalDevice physical() const { return physical_; }
+    VkQueue queue() const { return queue_; }
+    uint32_t queueFamily() const { return queue_family_; }
+    VkDescriptorSetLayout sceneSetLayout() const { return scene_set_layout_; }
+    const VkPhysicalDeviceLimits& limits() const { return properties_.limits; }
+    std::string name() const { return properties_.deviceName; }
+    bool isCpu() const { return properties_.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU; }
+    /// Milliseconds spent building pipelines so far.
+    double pipelineMs() const { return pipeline_ms_; }
+    uint64_t allocatedBytes() const { return allocated_bytes_; }
+    /// Names a Vulkan object for validation messages and captures; does nothing without the debug extension.
+    void nameObject(VkObjectType type, uint64_t handle, std::string_view name) const;
+
+private:
+    enum class Placement { kDevice, kReadback, kStaging };
+    Device() = default;
+    void createLayouts();
+    void loadPipelineCache();
+    void savePipelineCache() const;
+    Buffer buffer(std::string_view name, uint64_t bytes, Placement placement) const;
+    Buffer uploadBytes(std::string_view name, std::span<const std::byte> data) const;
+    void downloadBytes(const Buffer& source, std::span<std::byte> data) const;
+    VkDeviceMemory allocate(const VkMemoryRequirements& needs, Placement placement, bool& host_visible) const;
+    template <typename Record>
+    void submitOnce(Record&& record) const;
+
+    Instance instance_;
+    VkPhysicalDevice physical_ = VK_NULL_HANDLE;
+    VkDevice device_ = VK_NULL_HANDLE;
+    VkQueue queue_ = VK_NULL_HANDLE;
+    uint32_t queue_family_ = 0;
+    VkPhysicalDeviceProperties properties_{};
+    VkPhysicalDeviceMemoryProperties memory_{};
+    VkDescriptorSetLayout scene_set_layout_ = VK_NULL_HANDLE;
+    VkCommandPool once_pool_ = VK_NULL_HANDLE;
+    VkPipelineCache pipeline_cache_ = VK_NULL_HANDLE;
+    std::filesystem::path pipeline_cache_path_;
+    PFN_vkSetDebugUtilsObjectNameEXT set_name_ = nullptr;
+    mutable double pipeline_ms_ = 0;
+    mutable uint64_t allocated_bytes_ = 0;
+};

@@ -1,0 +1,52 @@
+// A compute pipeline and what its SPIR-V says of itself, known since build time.
+#pragma once
+#include "runtime/gpu/vulkan.h"
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string_view>
+
+/// One storage block of a kernel (descriptor set 1).
+struct KernelBlock
+{
+    std::string_view name; // the GLSL block name
+    uint32_t binding;
+    bool reads;
+    bool writes;
+};
+
+/// A compiled shader with its reflection, written by the build (shaders/CMakeLists.txt).
+struct KernelCode
+{
+    std::string_view name; // "samples/assign"
+    std::span<const uint32_t> words;
+    std::span<const KernelBlock> blocks;
+    uint32_t push_bytes;
+    uint32_t group_size; // local_size_x; kernels are one-dimensional
+};
+
+/// Every kernel of the build, sorted by name.
+std::span<const KernelCode> kernelCodes();
+
+/// A compute pipeline; a handle that may be copied. Lives no longer than its Device.
+class Kernel
+{
+public:
+    const KernelCode& code() const { return *state_->code; }
+    VkPipeline pipeline() const { return state_->pipeline; }
+    VkPipelineLayout layout() const { return state_->layout; }
+
+private:
+    friend class Device;
+    struct State
+    {
+        VkDevice device = VK_NULL_HANDLE;
+        const KernelCode* code = nullptr;
+        VkPipeline pipeline = VK_NULL_HANDLE;
+        VkPipelineLayout layout = VK_NULL_HANDLE;
+        VkDescriptorSetLayout set_layout = VK_NULL_HANDLE;
+        ~State();
+    };
+    std::shared_ptr<State> state_;
+};

@@ -1,0 +1,66 @@
+// Device memory: buffers and sampled images, each with its own allocation, freed with the object.
+#pragma once
+#include "runtime/gpu/vulkan.h"
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <utility>
+
+/// Device-local memory owned by this object. Its owner keeps it alive until the GPU is done with it.
+class Buffer
+{
+public:
+    Buffer() = default;
+    Buffer(Buffer&& other) noexcept { swap(other); }
+    Buffer& operator=(Buffer&& other) noexcept { swap(other); return *this; }
+    ~Buffer();
+
+    uint64_t size() const { return size_; } // bytes
+    VkBuffer handle() const { return buffer_; }
+    const std::string& name() const { return name_; }
+    /// The buffer's bytes where the CPU can reach them (host-visible memory), else empty.
+    std::span<std::byte> mapped() const { return mapped_; }
+    explicit operator bool() const { return buffer_ != VK_NULL_HANDLE; }
+
+private:
+    friend class Device;
+    void swap(Buffer& other);
+    VkDevice device_ = VK_NULL_HANDLE;
+    VkBuffer buffer_ = VK_NULL_HANDLE;
+    VkDeviceMemory memory_ = VK_NULL_HANDLE;
+    uint64_t size_ = 0;
+    std::span<std::byte> mapped_;
+    std::string name_;
+};
+
+/// A sampled 2D or 2D-array image with its view.
+class Image
+{
+public:
+    Image() = default;
+    Image(Image&& other) noexcept { swap(other); }
+    Image& operator=(Image&& other) noexcept { swap(other); return *this; }
+    ~Image();
+
+    VkImageView view() const { return view_; }
+    VkImage handle() const { return image_; }
+
+private:
+    friend class Device;
+    void swap(Image& other);
+    VkDevice device_ = VK_NULL_HANDLE;
+    VkImage image_ = VK_NULL_HANDLE;
+    VkImageView view_ = VK_NULL_HANDLE;
+    VkDeviceMemory memory_ = VK_NULL_HANDLE;
+};
+
+struct ImageShape
+{
+    VkFormat format = VK_FORMAT_R8G8B8A8_UNORM;
+    uint32_t width = 1;  // texels
+    uint32_t height = 1;
+    uint32_t layers = 1;
+    uint32_t levels = 1;
+    bool array = false; // view as sampler2DArray
+};

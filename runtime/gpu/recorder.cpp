@@ -1,0 +1,234 @@
+#include "runtime/gpu/recorder.h"
+
+#include <algorithm>
+#include <array>
+
+namespace
+{
+constexpr uint32_t kMaxTimestamps = 2048;
+}
+
+Recorder::Recorder(const Device& device) : device_(device)
+{
+    const VkCommandPoolCreateInfo pool{.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
+                                       .queueFamilyIndex = device.queueFamily()};
+    vulkanCheck(vkCreateCommandPool(device.handle(), &pool, nullptr, &pool_));
+    const VkCommandBufferAllocateInfo info{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
+                                           .commandPool = pool_,
+                                           .level = VK_COMMAND_BUFFER_LEVEL_PRIMARY,
+                                           .commandBufferCount = 1};
+    vulkanCheck(vkAllocateCommandBuffers(device.handle(), &info, &commands_));
+    const VkFenceCreateInfo fence{.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO};
+    vulkanCheck(vkCreateFence(device.handle(), &fence, nullptr, &fence_));
+    const VkQueryPoolCreateInfo queries{.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO,
+                                        .queryType = VK_QUERY_TYPE_TIMESTAMP,
+                                        .queryCount = kMaxTimestamps};
+    vulkanCheck(vkCreateQueryPool(device.handle(), &queries, nullptr, &queries_));
+    push_descriptors_ = PFN_vkCmdPushDescriptorSetKHR(vkGetDeviceProcAddr(device.handle(), "vkCmdPushDescriptorSetKHR"));
+}
+
+Recorder::~Recorder()
+{
+    device_.waitIdle();
+    vkDestroyQueryPool(device_.handle(), queries_, nullptr);
+    vkDestroyFence(device_.handle(), fence_, nullptr);
+    vkDestroyCommandPool(device_.handle(), pool_, nullptr);
+}
+
+void Recorder::begin(VkDescriptorSet scene_set)
+{
+    scene_set_ = scene_set;
+    scopes_.clear();
+    query_count_ = 0;
+    read_.clear();
+    written_.clear();
+    vulkanCheck(vkResetCommandPool(device_.handle(), pool_, 0));
+    const VkCommandBufferBeginInfo info{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
+                                        .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT};
+    vulkanCheck(vkBeginCommandBuffer(commands_, &info));
+    vkCmdResetQueryPool(commands_, queries_, 0, kMaxTimestamps);
+    barrier(); // whatever an earlier submission left in flight
+}
+
+uint32_t Recorder::timestamp()
+{
+    check(query_count_ < kMaxTimestamps, "more than {} timestamps in one submission", kMaxTimestamps);
+    vkCmdWriteTimestamp2(commands_, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, queries_, query_count_);
+    return query_count_++;
+}
+
+Recorder::Scope Recorder::scope(std::string_view name)
+{
+    open_scopes_.push_back(scopes_.size());
+    scopes_.push_back({.name = std::string(name), .first = timestamp(), .last = 0});
+    return Scope(*this);
+}
+
+void Recorder::endScope()
+{
+    scopes_[open_scopes_.back()].last = timestamp();
+    open_scopes_.pop_back();
+}
+
+void Recorder::barrier()
+{
+    constexpr VkPipelineStageFlags2 kStages =
+        VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_2_TRANSFER_BIT | VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT;
+    const VkMemoryBarrier2 memory{
+        .sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
+        .srcStageMask = kStages,
+        .srcAccessMask = VK_ACCESS_2_SHADER_WRITE_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT,
+        .dstStageMask = kStages,
+        .dstAccessMask = VK_ACCESS_2_SHADER_READ_BIT | VK_ACCESS_2_SHADER_WRITE_BIT | VK_ACCESS_2_TRANSFER_READ_BIT |
+                         VK_ACCESS_2_TRANSFER_WRITE_BIT | VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT,
+    };
+    const VkDependencyInfo info{
+        .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO, .memoryBarrierCount = 1, .pMemoryBarriers = &memory};
+    vkCmdPipelineBarrier2(commands_, &info);
+    read_.clear();
+    written_.clear();
+}
+
+bool Recorder::conflicts(const Buffer& buffer, bool writes) const
+{
+    return written_.contains(buffer.handle()) || (writes && read_.contains(buffer.handle()));
+}
+
+void Recorder::note(const Buffer& buffer, bool reads, bool writes)
+{
+    if (reads)
+        read_.insert(buffer.handle());
+    if (writes)
+        written_.insert(buffer.handle());
+}
+
+void Recorder::prepare(const Kernel& kernel, const void* params, size_t param_bytes, std::initializer_list<Binding> bindings,
+                       const Buffer* arguments)
+{
+    const KernelCode& code = kernel.code();
+    check(param_bytes == code.push_bytes, "{}: {} bytes of parameters given, the kernel has {}", code.name, param_bytes,
+          code.push_bytes);
+    const auto list = [&]
+    {
+        std::string names;
+        for (const KernelBlock& block : code.blocks)
+            names += fmt::format(" {}", block.name);
+        return names;
+    };
+    check(bindings.size() == code.blocks.size(), "{}: {} buffers given, the kernel's blocks are{}", code.name, bindings.size(),
+          list());
+
+    std::array<VkDescriptorBufferInfo, 32> infos;
+    std::array<VkWriteDescriptorSet, 32> writes;
+    uint32_t count = 0;
+    bool hazard = arguments && conflicts(*arguments, false);
+    for (const Binding& binding : bindings)
+    {
+        const auto block = std::ranges::find(code.blocks, binding.block, &KernelBlock::name);
+        check(block != code.blocks.end(), "{}: no block '{}'; its blocks are{}", code.name, binding.block, list());
+        hazard |= conflicts(binding.buffer, block->writes);
+        infos[count] = {.buffer = binding.buffer.handle(), .offset = 0, .range = VK_WHOLE_SIZE};
+        writes[count] = {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
+                         .dstBinding = block->binding,
+                         .descriptorCount = 1,
+                         .descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
+                         .pBufferInfo = &infos[count]};
+        ++count;
+    }
+    if (hazard)
+        barrier();
+    for (const Binding& binding : bindings)
+    {
+        const auto block = std::ranges::find(code.blocks, binding.block, &KernelBlock::name);
+        note(binding.buffer, block->reads, block->writes);
+    }
+    if (arguments)
+        note(*arguments, true, false);
+
+    vkCmdBindPipeline(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.pipeline());
+    if (scene_set_)
+        vkCmdBindDescriptorSets(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.layout(), 0, 1, &scene_set_, 0, nullptr);
+    if (count > 0)
+        push_descriptors_(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.layout(), 1, count, writes.data());
+    if (param_bytes > 0)
+        vkCmdPushConstants(commands_, kernel.layout(), VK_SHADER_STAGE_COMPUTE_BIT, 0, uint32_t(param_bytes), params);
+}
+
+void Recorder::dispatch(const Kernel& kernel, uint32_t thread_count)
+{
+    const uint32_t groups = (thread_count + kernel.code().group_size - 1) / kernel.code().group_size;
+    check(groups <= device_.limits().maxComputeWorkGroupCount[0], "{}: {} groups", kernel.code().name, groups);
+    if (groups > 0)
+        vkCmdDispatch(commands_, groups, 1, 1);
+}
+
+void Recorder::fill(const Buffer& buffer, uint32_t word)
+{
+    if (conflicts(buffer, true))
+        barrier();
+    note(buffer, false, true);
+    vkCmdFillBuffer(commands_, buffer.handle(), 0, VK_WHOLE_SIZE, word);
+}
+
+void Recorder::copy(const Buffer& from, const Buffer& to, uint64_t bytes)
+{
+    if (conflicts(from, false) || conflicts(to, true))
+        barrier();
+    note(from, true, false);
+    note(to, false, true);
+    const VkBufferCopy region{.size = bytes};
+    vkCmdCopyBuffer(commands_, from.handle(), to.handle(), 1, &region);
+}
+
+void Recorder::submit(VkSemaphore wait_for, VkSemaphore signal)
+{
+    check(open_scopes_.empty(), "scope '{}' is still open", scopes_[open_scopes_.back()].name);
+    const VkMemoryBarrier2 to_host{
+        .sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
+        .srcStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+        .srcAccessMask = VK_ACCESS_2_MEMORY_WRITE_BIT,
+        .dstStageMask = VK_PIPELINE_STAGE_2_HOST_BIT,
+        .dstAccessMask = VK_ACCESS_2_HOST_READ_BIT,
+    };
+    const VkDependencyInfo info{
+        .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO, .memoryBarrierCount = 1, .pMemoryBarriers = &to_host};
+    vkCmdPipelineBarrier2(commands_, &info);
+    vulkanCheck(vkEndCommandBuffer(commands_));
+    vulkanCheck(vkResetFences(device_.handle(), 1, &fence_));
+    constexpr VkPipelineStageFlags kWaitStage = VK_PIPELINE_STAGE_ALL_COMMANDS_BIT;
+    const VkSubmitInfo submit_info{
+        .sType = VK_STRUCTURE_TYPE_SUBMIT_INFO,
+        .waitSemaphoreCount = wait_for ? 1u : 0u,
+        .pWaitSemaphores = &wait_for,
+        .pWaitDstStageMask = &kWaitStage,
+        .commandBufferCount = 1,
+        .pCommandBuffers = &commands_,
+        .signalSemaphoreCount = signal ? 1u : 0u,
+        .pSignalSemaphores = &signal,
+    };
+    vulkanCheck(vkQueueSubmit(device_.queue(), 1, &submit_info, fence_));
+}
+
+std::vector<StageTime> Recorder::wait()
+{
+    vulkanCheck(vkWaitForFences(device_.handle(), 1, &fence_, VK_TRUE, UINT64_MAX));
+    std::vector<uint64_t> ticks(query_count_);
+    if (query_count_ > 0)
+        vulkanCheck(vkGetQueryPoolResults(device_.handle(), queries_, 0, query_count_, ticks.size() * sizeof(uint64_t), ticks.data(),
+                                          sizeof(uint64_t), VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT));
+    std::vector<StageTime> times;
+    for (const ScopeRecord& record : scopes_)
+    {
+        auto entry = std::ranges::find(times, record.name, &StageTime::name);
+        if (entry == times.end())
+            entry = times.insert(times.end(), StageTime{.name = record.name});
+        entry->ms += double(ticks[record.last] - ticks[record.first]) * device_.limits().timestampPeriod * 1e-6;
+    }
+    return times;
+}
+
+std::vector<StageTime> Recorder::submitAndWait()
+{
+    submit(VK_NULL_HANDLE, VK_NULL_HANDLE);
+    return wait();
+}

@@ -1,0 +1,113 @@
+// Records GPU work and submits it. Barriers come from what each kernel declares readonly and writeonly.
+#pragma once
+#include "runtime/gpu/device.h"
+
+#include <initializer_list>
+#include <string>
+#include <unordered_set>
+#include <vector>
+
+struct Binding
+{
+    std::string_view block; // the GLSL block name
+    const Buffer& buffer;
+};
+
+/// What one named scope cost on the GPU.
+struct StageTime
+{
+    std::string name;
+    double ms = 0;
+};
+
+/// For kernels without push constants.
+struct NoParams {};
+
+class Recorder
+{
+public:
+    explicit Recorder(const Device& device);
+    ~Recorder();
+    Recorder(const Recorder&) = delete;
+    Recorder& operator=(const Recorder&) = delete;
+
+    /// Ends a named, timed region when it goes out of scope. Scopes of one name in one submission add up.
+    class Scope
+    {
+    public:
+        explicit Scope(Recorder& recorder) : recorder_(recorder) {}
+        ~Scope() { recorder_.endScope(); }
+        Scope(const Scope&) = delete;
+
+    private:
+        Recorder& recorder_;
+    };
+
+    /// Starts a command buffer; every kernel sees `scene_set` as descriptor set 0 (may be null for kernels without it).
+    void begin(VkDescriptorSet scene_set);
+    [[nodiscard]] Scope scope(std::string_view name);
+
+    void clear(const Buffer& buffer) { fill(buffer, 0); }
+    void fill(const Buffer& buffer, uint32_t word);
+    void copy(const Buffer& from, const Buffer& to, uint64_t bytes);
+
+    /// Runs `kernel` on at least `thread_count` threads. `params` must match the kernel's push constants in size, and
+    /// `bindings` must name each of its blocks exactly once; either mistake aborts and names the culprit.
+    template <typename Params>
+    void run(const Kernel& kernel, uint32_t thread_count, const Params& params, std::initializer_list<Binding> bindings)
+    {
+        prepare(kernel, &params, paramBytes<Params>(), bindings, nullptr);
+        dispatch(kernel, thread_count);
+    }
+
+    /// The same with the group count taken from `arguments` (VkDispatchIndirectCommand at byte `offset`).
+    template <typename Params>
+    void runIndirect(const Kernel& kernel, const Buffer& arguments, uint64_t offset, const Params& params,
+                     std::initializer_list<Binding> bindings)
+    {
+        prepare(kernel, &params, paramBytes<Params>(), bindings, &arguments);
+        vkCmdDispatchIndirect(commands_, arguments.handle(), offset);
+    }
+
+    /// Makes all writes so far visible to the CPU, submits and waits.
+    /// @return the time of each scope, in order of first appearance
+    std::vector<StageTime> submitAndWait();
+
+    /// The command buffer being recorded, for the swapchain and the user interface.
+    VkCommandBuffer commands() const { return commands_; }
+    /// Ends recording and submits with semaphores (either may be null); wait() then waits and returns the times.
+    void submit(VkSemaphore wait_for, VkSemaphore signal);
+    std::vector<StageTime> wait();
+
+private:
+    template <typename Params>
+    static constexpr size_t paramBytes() { return std::is_empty_v<Params> ? 0 : sizeof(Params); }
+    void prepare(const Kernel& kernel, const void* params, size_t param_bytes, std::initializer_list<Binding> bindings,
+                 const Buffer* arguments);
+    void dispatch(const Kernel& kernel, uint32_t thread_count);
+    bool conflicts(const Buffer& buffer, bool writes) const;
+    void note(const Buffer& buffer, bool reads, bool writes);
+    void barrier();
+    void endScope();
+    uint32_t timestamp();
+
+    const Device& device_;
+    VkCommandPool pool_ = VK_NULL_HANDLE;
+    VkCommandBuffer commands_ = VK_NULL_HANDLE;
+    VkFence fence_ = VK_NULL_HANDLE;
+    VkQueryPool queries_ = VK_NULL_HANDLE;
+    PFN_vkCmdPushDescriptorSetKHR push_descriptors_ = nullptr;
+    VkDescriptorSet scene_set_ = VK_NULL_HANDLE;
+
+    // Since the last barrier. A kernel that meets a hazard puts one full barrier before itself and these start anew.
+    std::unordered_set<VkBuffer> read_, written_;
+
+    struct ScopeRecord
+    {
+        std::string name;
+        uint32_t first, last;
+    };
+    std::vector<ScopeRecord> scopes_;
+    std::vector<size_t> open_scopes_;
+    uint32_t query_count_ = 0;
+};

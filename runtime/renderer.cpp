@@ -1,0 +1,80 @@
+#include "runtime/renderer.h"
+
+#include <algorithm>
+#include <cstring>
+
+namespace
+{
+/// Small pictures leave a GPU idle: several samples a pixel side by side fill it. A CPU gains nothing by that.
+uint32_t batchFor(const Device& device, uint32_t pixel_count)
+{
+    constexpr uint32_t kPathsToFill = 1u << 20;
+    return device.isCpu() ? 1 : std::clamp(kPathsToFill / pixel_count, 1u, 64u);
+}
+
+bool sameView(const gpu::CameraParams& a, const gpu::CameraParams& b)
+{
+    return std::memcmp(&a, &b, sizeof(a)) == 0; // both from cameraParams(): sampling fields are equal
+}
+} // namespace
+
+Renderer::Renderer(const Device& device, const SceneGpu& scene, Mode mode, uint32_t width, uint32_t height)
+    : width_(width), height_(height), max_batch_(mode == Mode::kReference ? batchFor(device, width * height) : 1),
+      rays_(device, scene), resolve_(device, width * height)
+{
+    if (mode == Mode::kReference)
+        reference_.emplace(device, scene, width * height, max_batch_);
+    else
+    {
+        primary_.emplace(device, scene, width * height);
+        direct_.emplace(device, scene, width * height);
+    }
+}
+
+void Renderer::record(Recorder& rec, const Camera& camera, const Settings& settings, uint32_t seed, uint32_t sample_count)
+{
+    check(sample_count >= 1 && sample_count <= max_batch_, "{} samples in a frame of at most {}", sample_count, max_batch_);
+    gpu::CameraParams view = cameraParams(camera, width_, height_);
+    view.seed = seed;
+    if (!last_camera_ || !sameView(*last_camera_, view))
+        resolve_.restart(rec);
+    last_camera_ = view;
+    view.sample_count = sample_count;
+    view.first_sample = resolve_.sampleCount();
+    const uint32_t pixel_count = width_ * height_;
+
+    if (reference_)
+    {
+        const Buffer& radiance = reference_->record(rec, rays_, {.camera = view, .depth_limit = settings.reference_depth});
+        resolve_.accumulate(rec, radiance, pixel_count, sample_count);
+        return;
+    }
+    const auto primary = primary_->record(rec, rays_, {.camera = view, .specular_depth = settings.specular_depth});
+    direct_->record(rec, rays_,
+                    {.points = primary.points,
+                     .radiance = primary.radiance,
+                     .point_count = pixel_count,
+                     .light_sample_count = settings.direct_samples,
+                     .first_sample = view.first_sample,
+                     .seed = seed});
+    resolve_.accumulate(rec, primary.radiance, pixel_count, 1);
+}
+
+const Buffer& Renderer::display(Recorder& rec, const Settings& settings, bool bgra)
+{
+    return resolve_.display(rec, width_ * height_, settings.exposure, Tonemap(settings.tonemap), bgra);
+}
+
+std::vector<gpu::vec3> Renderer::picture(const Device& device) const
+{
+    std::vector<gpu::vec3> pixels = device.download<gpu::vec3>(resolve_.sum(), uint64_t(width_) * height_);
+    const float scale = 1.0f / float(std::max(resolve_.sampleCount(), 1u));
+    for (gpu::vec3& pixel : pixels)
+        pixel = scale * pixel;
+    return pixels;
+}
+
+uint32_t Renderer::nonFiniteCount(const Device& device) const
+{
+    return device.download<uint32_t>(resolve_.nonFiniteCount(), 1)[0];
+}

@@ -1,0 +1,48 @@
+// The frame: which stages run, in which order, and what they hand to each other.
+#pragma once
+#include "runtime/camera.h"
+#include "runtime/settings.h"
+#include "runtime/stages/direct.h"
+#include "runtime/stages/primary.h"
+#include "runtime/stages/rays.h"
+#include "runtime/stages/reference.h"
+#include "runtime/stages/resolve.h"
+
+#include <optional>
+
+enum class Mode
+{
+    kDirect,    // emission, direct light, mirrors and glass
+    kReference, // everything, by path tracing
+};
+
+class Renderer
+{
+public:
+    /// Allocates for pictures of `width` x `height` pixels; make another Renderer for another size.
+    Renderer(const Device& device, const SceneGpu& scene, Mode mode, uint32_t width, uint32_t height);
+
+    /// Records one frame, `sample_count` more samples a pixel. A changed camera starts the picture anew.
+    void record(Recorder& rec, const Camera& camera, const Settings& settings, uint32_t seed, uint32_t sample_count = 1);
+    /// The picture so far as 8-bit sRGB pixels, uint[width * height].
+    const Buffer& display(Recorder& rec, const Settings& settings, bool bgra);
+
+    /// Samples a pixel that one record() may take side by side.
+    uint32_t maxBatch() const { return max_batch_; }
+    uint32_t sampleCount() const { return resolve_.sampleCount(); }
+    uint32_t width() const { return width_; }
+    uint32_t height() const { return height_; }
+    /// Mean linear radiance, vec3[width * height] rows from the top; waits for the device.
+    std::vector<gpu::vec3> picture(const Device& device) const;
+    /// Samples left out because they were NaN or infinite.
+    uint32_t nonFiniteCount(const Device& device) const;
+
+private:
+    uint32_t width_, height_, max_batch_;
+    RayStage rays_;
+    std::optional<PrimaryStage> primary_;
+    std::optional<DirectStage> direct_;
+    std::optional<ReferenceStage> reference_;
+    ResolveStage resolve_;
+    std::optional<gpu::CameraParams> last_camera_;
+};

@@ -1,0 +1,168 @@
+#include "runtime/scene_gpu.h"
+
+#include <algorithm>
+
+namespace
+{
+gpu::vec3 toVec3(const lumicut::fb::Vec3& v) { return {v.x(), v.y(), v.z()}; }
+
+gpu::SceneInfo sceneInfo(const package::Package& package)
+{
+    const auto& meta = package.meta();
+    const auto lights = package.lights();
+    gpu::SceneInfo info{
+        .bounds_min = toVec3(*meta.bounds_min()),
+        .light_count = uint32_t(lights.size()),
+        .bounds_max = toVec3(*meta.bounds_max()),
+        .environment_light = gpu::kNone,
+        .environment_importance_size = {},
+        .caustic_target_count = uint32_t(package.causticTargets().size()),
+        .triangle_count = uint32_t(package.triangles().size()),
+    };
+    if (!lights.empty() && lights.back().kind == gpu::kLightEnvironment)
+    {
+        info.environment_light = uint32_t(lights.size() - 1);
+        info.environment_importance_size = {meta.environment()->importance_width(), meta.environment()->importance_height()};
+    }
+    return info;
+}
+} // namespace
+
+Result<std::unique_ptr<SceneGpu>> SceneGpu::create(const Device& device, const package::Package& package)
+{
+    std::unique_ptr<SceneGpu> scene(new SceneGpu(device));
+    const uint64_t limit = device.limits().maxStorageBufferRange;
+    std::optional<Error> too_large;
+    const auto add = [&](const char* name, auto data)
+    {
+        if (data.size_bytes() > limit)
+        {
+            too_large = Error{ExitCode::kDevice, fmt::format("the scene's {} take {} MiB, more than the {} MiB that a buffer may "
+                                                             "have on {}; try another device or a smaller scene", name,
+                                                             data.size_bytes() >> 20, limit >> 20, device.name())};
+            scene->buffers_.emplace_back();
+            return;
+        }
+        scene->buffers_.push_back(device.upload(fmt::format("scene.{}", name), data));
+    };
+    add("BVH nodes", package.bvhNodes()); // in the order of the bindings in gpu_scene.h
+    add("BVH triangles", package.bvhTriangles());
+    add("triangles", package.triangles());
+    add("vertices", package.vertexAttributes());
+    add("materials", package.materials());
+    add("texture references", package.textureRefs());
+    add("lights", package.lights());
+    add("light aliases", package.lightAliases());
+    add("environment texels", package.environmentTexels());
+    add("caustic targets", package.causticTargets());
+    if (too_large)
+        return *too_large;
+    scene->info_ = sceneInfo(package);
+    scene->info_buffer_ = device.upload("scene.info", std::span<const gpu::SceneInfo>(&scene->info_, 1));
+    scene->trace_constants_ = {package.meta().has_alpha(), package.meta().has_thin()};
+    scene->has_area_lights_ =
+        std::ranges::any_of(package.lights(), [](const gpu::Light& light) { return light.kind >= gpu::kLightTriangle; });
+    scene->createImages(package);
+    scene->createDescriptorSet();
+    return scene;
+}
+
+SceneGpu::~SceneGpu()
+{
+    device_.waitIdle();
+    vkDestroyDescriptorPool(device_.handle(), pool_, nullptr);
+    vkDestroySampler(device_.handle(), texture_sampler_, nullptr);
+    vkDestroySampler(device_.handle(), environment_sampler_, nullptr);
+}
+
+void SceneGpu::createImages(const package::Package& package)
+{
+    constexpr std::array<uint32_t, 4> kWhite{~0u, ~0u, ~0u, ~0u};
+    const auto& pages = *package.meta().texture_pages();
+    for (uint32_t p = 0; p < gpu::kTexturePageCount; ++p)
+    {
+        if (p >= pages.size())
+        {
+            pages_.push_back(device_.uploadImage("scene.no_page", {.array = true}, std::as_bytes(std::span(kWhite).first(1))));
+            continue;
+        }
+        const auto& page = *pages[p];
+        const bool srgb = page.encoding() == lumicut::fb::TextureEncoding::Rgba8Srgb;
+        pages_.push_back(device_.uploadImage(fmt::format("scene.page_{}", p),
+                                             {.format = srgb ? VK_FORMAT_R8G8B8A8_SRGB : VK_FORMAT_R8G8B8A8_UNORM,
+                                              .width = page.width(),
+                                              .height = page.height(),
+                                              .layers = page.layers(),
+                                              .levels = page.levels(),
+                                              .array = true},
+                                             package.texturePage(p)));
+    }
+    if (const auto* environment = package.meta().environment())
+        environment_ = device_.uploadImage("scene.environment",
+                                           {.format = VK_FORMAT_R32G32B32A32_SFLOAT, .width = environment->width(), .height = environment->height()},
+                                           std::as_bytes(package.environmentMap()));
+    else
+        environment_ = device_.uploadImage("scene.no_environment", {.format = VK_FORMAT_R32G32B32A32_SFLOAT}, std::as_bytes(std::span(kWhite)));
+}
+
+void SceneGpu::createDescriptorSet()
+{
+    VkSamplerCreateInfo sampler{
+        .sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO,
+        .magFilter = VK_FILTER_LINEAR,
+        .minFilter = VK_FILTER_LINEAR,
+        .mipmapMode = VK_SAMPLER_MIPMAP_MODE_LINEAR,
+        .addressModeU = VK_SAMPLER_ADDRESS_MODE_REPEAT,
+        .addressModeV = VK_SAMPLER_ADDRESS_MODE_REPEAT,
+        .addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
+        .maxLod = VK_LOD_CLAMP_NONE,
+    };
+    vulkanCheck(vkCreateSampler(device_.handle(), &sampler, nullptr, &texture_sampler_));
+    sampler.addressModeV = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
+    vulkanCheck(vkCreateSampler(device_.handle(), &sampler, nullptr, &environment_sampler_));
+
+    const uint32_t buffer_count = uint32_t(buffers_.size());
+    const std::array sizes{
+        VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1},
+        VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, buffer_count},
+        VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, gpu::kTexturePageCount + 1},
+    };
+    const VkDescriptorPoolCreateInfo pool{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
+                                          .maxSets = 1,
+                                          .poolSizeCount = uint32_t(sizes.size()),
+                                          .pPoolSizes = sizes.data()};
+    vulkanCheck(vkCreateDescriptorPool(device_.handle(), &pool, nullptr, &pool_));
+    const VkDescriptorSetLayout layout = device_.sceneSetLayout();
+    const VkDescriptorSetAllocateInfo allocate{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
+                                               .descriptorPool = pool_,
+                                               .descriptorSetCount = 1,
+                                               .pSetLayouts = &layout};
+    vulkanCheck(vkAllocateDescriptorSets(device_.handle(), &allocate, &set_));
+
+    std::vector<VkDescriptorBufferInfo> buffers{{info_buffer_.handle(), 0, VK_WHOLE_SIZE}};
+    for (const Buffer& buffer : buffers_)
+        buffers.push_back({buffer.handle(), 0, VK_WHOLE_SIZE});
+    std::vector<VkDescriptorImageInfo> images;
+    for (const Image& page : pages_)
+        images.push_back({texture_sampler_, page.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL});
+    images.push_back({environment_sampler_, environment_.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL});
+
+    std::vector<VkWriteDescriptorSet> writes;
+    const auto write = [&](uint32_t binding, VkDescriptorType type, uint32_t count, const VkDescriptorBufferInfo* buffer,
+                           const VkDescriptorImageInfo* image)
+    {
+        writes.push_back({.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
+                          .dstSet = set_,
+                          .dstBinding = binding,
+                          .descriptorCount = count,
+                          .descriptorType = type,
+                          .pImageInfo = image,
+                          .pBufferInfo = buffer});
+    };
+    write(gpu::kSceneInfoBinding, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1, &buffers[0], nullptr);
+    for (uint32_t b = 0; b < buffer_count; ++b)
+        write(gpu::kBvhNodesBinding + b, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, &buffers[b + 1], nullptr);
+    write(gpu::kTexturePagesBinding, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, gpu::kTexturePageCount, nullptr, images.data());
+    write(gpu::kEnvironmentMapBinding, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 1, nullptr, &images.back());
+    vkUpdateDescriptorSets(device_.handle(), uint32_t(writes.size()), writes.data(), 0, nullptr);
+}

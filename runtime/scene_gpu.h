@@ -1,0 +1,43 @@
+// A package's scene on the device: descriptor set 0 of every kernel.
+#pragma once
+#include "format/package_read.h"
+#include "runtime/gpu/gpu.h"
+
+#include <array>
+#include <memory>
+#include <vector>
+
+class SceneGpu
+{
+public:
+    /// Uploads everything kernels read. The package may be closed afterwards.
+    /// @return kDevice where a chunk is larger than the device's storage buffers may be
+    static Result<std::unique_ptr<SceneGpu>> create(const Device& device, const package::Package& package);
+    ~SceneGpu();
+    SceneGpu(const SceneGpu&) = delete;
+    SceneGpu& operator=(const SceneGpu&) = delete;
+
+    VkDescriptorSet descriptorSet() const { return set_; }
+    const gpu::SceneInfo& info() const { return info_; }
+    /// Specialization constants of kernels that trace: has alpha, has thin walls (lib/bvh.glsl).
+    std::span<const uint32_t> traceConstants() const { return trace_constants_; }
+    /// Some light has an extent, so that a ray may find it: an emissive triangle or an environment.
+    bool hasAreaLights() const { return has_area_lights_; }
+
+private:
+    explicit SceneGpu(const Device& device) : device_(device) {}
+    void createImages(const package::Package& package);
+    void createDescriptorSet();
+
+    const Device& device_;
+    gpu::SceneInfo info_{};
+    std::array<uint32_t, 2> trace_constants_{};
+    bool has_area_lights_ = false;
+    Buffer info_buffer_;
+    std::vector<Buffer> buffers_; // by binding, kBvhNodesBinding first
+    std::vector<Image> pages_;    // kTexturePageCount of them, unused ones 1 x 1 white
+    Image environment_;
+    VkSampler texture_sampler_ = VK_NULL_HANDLE, environment_sampler_ = VK_NULL_HANDLE;
+    VkDescriptorPool pool_ = VK_NULL_HANDLE;
+    VkDescriptorSet set_ = VK_NULL_HANDLE;
+};

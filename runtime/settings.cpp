@@ -1,0 +1,87 @@
+#include "runtime/settings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+namespace
+{
+constexpr std::array kKnobs{
+    Knob{"specular_depth", &Settings::specular_depth, 0, 64, "", "mirror and glass events followed from the eye"},
+    Knob{"direct_samples", &Settings::direct_samples, 1, 64, "", "shadow rays a pixel and frame"},
+    Knob{"reference_depth", &Settings::reference_depth, 1, 1024, "", "most vertices of a path of the reference"},
+    Knob{"exposure", &Settings::exposure, -20, 20, "stops", "brightness of the display; EXR files stay linear"},
+    Knob{"tonemap", &Settings::tonemap, 0, 2, "", "display transform", "srgb,aces,agx"},
+};
+
+std::vector<std::string_view> splitChoices(std::string_view choices)
+{
+    std::vector<std::string_view> names;
+    while (!choices.empty())
+    {
+        const size_t comma = std::min(choices.find(','), choices.size());
+        names.push_back(choices.substr(0, comma));
+        choices.remove_prefix(std::min(comma + 1, choices.size()));
+    }
+    return names;
+}
+
+std::optional<double> parseValue(const Knob& knob, std::string_view text)
+{
+    const auto names = splitChoices(knob.choices);
+    if (const auto named = std::ranges::find(names, text); named != names.end())
+        return double(named - names.begin());
+    double value = 0;
+    const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || stop != text.data() + text.size() || !names.empty())
+        return std::nullopt;
+    const bool whole = std::holds_alternative<uint32_t Settings::*>(knob.member);
+    return value < knob.least || value > knob.most || (whole && value != std::floor(value)) ? std::nullopt : std::optional(value);
+}
+
+std::string rangeOf(const Knob& knob)
+{
+    const char* kind = std::holds_alternative<uint32_t Settings::*>(knob.member) ? "a whole number" : "a number";
+    return knob.choices.empty() ? fmt::format("{} in {}..{}", kind, knob.least, knob.most) : fmt::format("one of {}", knob.choices);
+}
+} // namespace
+
+std::span<const Knob> knobs() { return kKnobs; }
+
+Status applySetting(Settings& settings, const std::string& assignment)
+{
+    const size_t equals = assignment.find('=');
+    const std::string name = assignment.substr(0, equals);
+    const auto knob = std::ranges::find(kKnobs, name, &Knob::name);
+    if (equals == std::string::npos || knob == kKnobs.end())
+    {
+        std::string names;
+        for (const Knob& k : kKnobs)
+            names += fmt::format("{}{}", names.empty() ? "" : ", ", k.name);
+        return Error{ExitCode::kUsage, fmt::format("--set {}: name=value is expected, with name one of {}", assignment, names)};
+    }
+    const std::optional<double> value = parseValue(*knob, std::string_view(assignment).substr(equals + 1));
+    if (!value)
+        return Error{ExitCode::kUsage, fmt::format("--set {}: {} must be {}", assignment, name, rangeOf(*knob))};
+    std::visit([&](auto member) { settings.*member = std::remove_reference_t<decltype(settings.*member)>(*value); }, knob->member);
+    return Success{};
+}
+
+std::string describeKnobs()
+{
+    const Settings defaults;
+    std::string text;
+    for (const Knob& knob : kKnobs)
+    {
+        std::string value = std::visit([&](auto member) { return fmt::format("{}", defaults.*member); }, knob.member);
+        if (!knob.choices.empty())
+            value = splitChoices(knob.choices)[std::stoul(value)];
+        text += fmt::format("  {} = {}{}{}  {}; {}\n", knob.name, value, knob.unit.empty() ? "" : " ", knob.unit, knob.help, rangeOf(knob));
+    }
+    return text;
+}

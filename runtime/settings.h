@@ -1,0 +1,36 @@
+// Every knob of the renderer once: name, default, unit, range, help. Feeds --set, --help and the user interface.
+#pragma once
+#include "format/result.h"
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+
+struct Settings
+{
+    uint32_t specular_depth = 8;
+    uint32_t direct_samples = 1;
+    uint32_t reference_depth = 64;
+    float exposure = 0;
+    uint32_t tonemap = 2; // Tonemap
+};
+
+struct Knob
+{
+    std::string_view name;
+    std::variant<uint32_t Settings::*, float Settings::*> member;
+    double least, most;
+    std::string_view unit; // "" for counts
+    std::string_view help;
+    std::string_view choices = ""; // comma-separated names of the values 0, 1, ... where the knob is a choice
+};
+
+std::span<const Knob> knobs();
+
+/// Applies "name=value". @return kUsage naming the valid names or the range
+Status applySetting(Settings& settings, const std::string& assignment);
+
+/// "specular_depth = 8 (0..64): help", a line a knob, for --help.
+std::string describeKnobs();

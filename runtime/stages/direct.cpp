@@ -1,0 +1,41 @@
+#include "runtime/stages/direct.h"
+
+DirectStage::DirectStage(const Device& device, const SceneGpu& scene, uint32_t max_pixels)
+    : sample_(device.kernel("direct/sample", scene.traceConstants())),
+      emitted_(device.kernel("direct/emitted", scene.traceConstants())),
+      emitter_queue_(device, "direct.emitter_queue", max_pixels),
+      shadow_size_(device.array<gpu::QueueSize>("direct.shadow_size", 1)),
+      shadow_rays_(device.array<gpu::ShadowRay>("direct.shadow_rays", max_pixels)),
+      emitter_rays_(device.array<gpu::EmitterRay>("direct.emitter_rays", max_pixels)),
+      hits_(device.array<gpu::Hit>("direct.hits", max_pixels)),
+      has_area_lights_(scene.hasAreaLights())
+{
+}
+
+void DirectStage::record(Recorder& rec, const RayStage& rays, const Input& in) const
+{
+    const auto scope = rec.scope("direct");
+    for (uint32_t i = 0; i < in.light_sample_count; ++i)
+    {
+        const gpu::DirectParams params{.point_count = in.point_count,
+                                       .first_sample = in.first_sample,
+                                       .seed = in.seed,
+                                       .light_sample = i,
+                                       .light_sample_count = in.light_sample_count};
+        const uint32_t sample = in.first_sample * in.light_sample_count + i;
+        rays.reset(rec, shadow_size_);
+        rays.reset(rec, emitter_queue_.size);
+        rec.run(sample_, in.point_count, params,
+                {{"Points", in.points}, {"ShadowQueue", shadow_size_}, {"ShadowRays", shadow_rays_},
+                 {"EmitterQueue", emitter_queue_.size}, {"Rays", emitter_queue_.rays}, {"EmitterRays", emitter_rays_}});
+        rays.close(rec, shadow_size_);
+        rays.visible(rec, shadow_size_, shadow_rays_, in.radiance, traceSeed(in.seed, sample, 0, true));
+        if (!has_area_lights_)
+            continue;
+        rays.close(rec, emitter_queue_.size);
+        rays.closest(rec, emitter_queue_, hits_, traceSeed(in.seed, sample, ~0u, false));
+        rec.runIndirect(emitted_, emitter_queue_.size, 0, params,
+                        {{"EmitterQueue", emitter_queue_.size}, {"Rays", emitter_queue_.rays}, {"Hits", hits_},
+                         {"EmitterRays", emitter_rays_}, {"Radiance", in.radiance}});
+    }
+}

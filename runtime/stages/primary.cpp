@@ -1,0 +1,39 @@
+#include "runtime/stages/primary.h"
+
+PrimaryStage::PrimaryStage(const Device& device, const SceneGpu& scene, uint32_t max_pixels)
+    : generate_(device.kernel("primary/generate")),
+      chain_(device.kernel("primary/chain", scene.traceConstants())),
+      queue_(device, "primary.queue", max_pixels),
+      next_queue_(device, "primary.next_queue", max_pixels),
+      hits_(device.array<gpu::Hit>("primary.hits", max_pixels)),
+      points_(device.array<gpu::ShadingPoint>("primary.points", max_pixels)),
+      radiance_(device.array<gpu::vec3>("primary.radiance", max_pixels))
+{
+}
+
+PrimaryStage::Output PrimaryStage::record(Recorder& rec, const RayStage& rays, const Input& in) const
+{
+    const auto scope = rec.scope("primary");
+    const uint32_t pixel_count = in.camera.width * in.camera.height;
+    rays.resize(rec, queue_.size, pixel_count);
+    rec.run(generate_, pixel_count, in.camera, {{"Rays", queue_.rays}});
+
+    const RayQueue* queue = &queue_;
+    const RayQueue* next = &next_queue_;
+    for (uint32_t depth = 0; depth <= in.specular_depth; ++depth)
+    {
+        const gpu::ChainParams params{.depth = depth,
+                                      .depth_limit = in.specular_depth,
+                                      .pixel_count = pixel_count,
+                                      .first_sample = in.camera.first_sample,
+                                      .seed = in.camera.seed};
+        rays.closest(rec, *queue, hits_, traceSeed(in.camera.seed, in.camera.first_sample, depth, false));
+        rays.reset(rec, next->size);
+        rec.runIndirect(chain_, queue->size, 0, params,
+                        {{"Queue", queue->size}, {"Rays", queue->rays}, {"Hits", hits_}, {"Points", points_}, {"Radiance", radiance_},
+                         {"NextQueue", next->size}, {"NextRays", next->rays}});
+        rays.close(rec, next->size);
+        std::swap(queue, next);
+    }
+    return {.points = points_, .radiance = radiance_};
+}

@@ -1,0 +1,27 @@
+// Camera rays and their specular chains: one shading point a pixel.
+#pragma once
+#include "runtime/stages/rays.h"
+#include "shaders/primary/primary.h"
+
+class PrimaryStage
+{
+public:
+    PrimaryStage(const Device& device, const SceneGpu& scene, uint32_t max_pixels);
+
+    struct Input
+    {
+        gpu::CameraParams camera; // with sample_count 1
+        uint32_t specular_depth;  // most specular events in a chain
+    };
+    struct Output
+    {
+        const Buffer& points;   // gpu::ShadingPoint[width * height]
+        const Buffer& radiance; // vec3[width * height]: what the chains themselves found: emitters, sky
+    };
+    Output record(Recorder& rec, const RayStage& rays, const Input& in) const;
+
+private:
+    Kernel generate_, chain_;
+    RayQueue queue_, next_queue_;
+    Buffer hits_, points_, radiance_;
+};

@@ -1,0 +1,46 @@
+#include "runtime/stages/reference.h"
+
+ReferenceStage::ReferenceStage(const Device& device, const SceneGpu& scene, uint32_t max_pixels, uint32_t max_batch)
+    : generate_(device.kernel("primary/generate")),
+      shade_(device.kernel("reference/shade", scene.traceConstants())),
+      queue_(device, "reference.queue", max_pixels * max_batch),
+      next_queue_(device, "reference.next_queue", max_pixels * max_batch),
+      hits_(device.array<gpu::Hit>("reference.hits", max_pixels * max_batch)),
+      states_(device.array<gpu::PathState>("reference.states", max_pixels * max_batch)),
+      radiance_(device.array<gpu::vec3>("reference.radiance", max_pixels * max_batch)),
+      shadow_size_(device.array<gpu::QueueSize>("reference.shadow_size", 1)),
+      shadow_rays_(device.array<gpu::ShadowRay>("reference.shadow_rays", max_pixels * max_batch))
+{
+}
+
+const Buffer& ReferenceStage::record(Recorder& rec, const RayStage& rays, const Input& in) const
+{
+    const auto scope = rec.scope("reference");
+    const uint32_t pixel_count = in.camera.width * in.camera.height;
+    const uint32_t path_count = pixel_count * in.camera.sample_count;
+    rays.resize(rec, queue_.size, path_count);
+    rec.run(generate_, path_count, in.camera, {{"Rays", queue_.rays}});
+
+    const RayQueue* queue = &queue_;
+    const RayQueue* next = &next_queue_;
+    for (uint32_t depth = 0; depth < in.depth_limit; ++depth)
+    {
+        const gpu::ShadeParams params{.depth = depth,
+                                      .depth_limit = in.depth_limit,
+                                      .pixel_count = pixel_count,
+                                      .first_sample = in.camera.first_sample,
+                                      .seed = in.camera.seed};
+        rays.closest(rec, *queue, hits_, traceSeed(in.camera.seed, in.camera.first_sample, depth, false));
+        rays.reset(rec, next->size);
+        rays.reset(rec, shadow_size_);
+        rec.runIndirect(shade_, queue->size, 0, params,
+                        {{"Queue", queue->size}, {"Rays", queue->rays}, {"Hits", hits_}, {"States", states_}, {"Radiance", radiance_},
+                         {"NextQueue", next->size}, {"NextRays", next->rays}, {"ShadowQueue", shadow_size_}, {"ShadowRays", shadow_rays_}});
+        rays.close(rec, next->size);
+        rays.close(rec, shadow_size_);
+        rays.visible(rec, shadow_size_, shadow_rays_, radiance_,
+                     traceSeed(in.camera.seed, in.camera.first_sample, depth, true));
+        std::swap(queue, next);
+    }
+    return radiance_;
+}

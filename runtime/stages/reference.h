@@ -1,0 +1,25 @@
+// The truth: an unbiased progressive path tracer in wavefronts.
+#pragma once
+#include "runtime/stages/rays.h"
+#include "shaders/reference/reference.h"
+
+class ReferenceStage
+{
+public:
+    /// @param max_pixels of a picture, @param max_batch samples a pixel taken side by side in one pass
+    ReferenceStage(const Device& device, const SceneGpu& scene, uint32_t max_pixels, uint32_t max_batch);
+
+    struct Input
+    {
+        gpu::CameraParams camera; // sample_count <= max_batch, first_sample: how many the pixels have had
+        uint32_t depth_limit;     // most vertices of a path; the rest of the light is lost
+    };
+    /// Traces camera.sample_count paths a pixel.
+    /// @return radiance of this pass alone: vec3[sample_count * width * height]
+    const Buffer& record(Recorder& rec, const RayStage& rays, const Input& in) const;
+
+private:
+    Kernel generate_, shade_;
+    RayQueue queue_, next_queue_;
+    Buffer hits_, states_, radiance_, shadow_size_, shadow_rays_;
+};

@@ -1,0 +1,29 @@
+// What a run of the player measured.
+#pragma once
+#include "format/result.h"
+#include "runtime/gpu/recorder.h"
+
+#include <chrono>
+#include <filesystem>
+
+struct Statistics
+{
+    std::string device;
+    double open_ms = 0;         // package verified, since the start
+    double first_submit_ms = 0; // first frame handed to the device, since the start
+    double pipeline_ms = 0;     // of that, building pipelines
+    uint64_t device_bytes = 0;
+    uint32_t sample_count = 0; // a pixel
+    uint32_t non_finite_samples = 0;
+    std::vector<std::vector<StageTime>> frames; // per submission
+
+    double elapsedMs() const;
+    void addFrame(std::vector<StageTime> times) { frames.push_back(std::move(times)); }
+    /// p50 and p95 of each stage over all submissions but the first.
+    std::string summary() const;
+    /// Schema "lumicut-play-stats/1".
+    Status writeJson(const std::filesystem::path& path) const;
+
+private:
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};

@@ -1,0 +1,136 @@
+// Choosing and evaluating lights: punctual, emissive triangles, environment. Functions only.
+#ifndef LIB_LIGHTS_GLSL
+#define LIB_LIGHTS_GLSL
+#include "lib/math.glsl"
+#include "lib/random.glsl"
+#include "lib/scene.glsl"
+#include "lib/surface.glsl"
+
+struct LightSample
+{
+    vec3 wi;        // unit, from the point to the light
+    float distance; // metres
+    vec3 weight;    // incident radiance / pdf (area, environment) or irradiance at normal incidence / pmf (punctual)
+    float pdf;      // per steradian, selection included; 0 for punctual lights, which no other technique can find
+};
+
+const LightSample kNoLight = LightSample(vec3(0.0, 0.0, 1.0), 0.0, vec3(0.0), 0.0);
+
+vec2 directionToEnvironment(vec3 d)
+{
+    return vec2(0.5 + atan(d.z, d.x) * (0.5 * kInvPi), acos(clamp(d.y, -1.0, 1.0)) * kInvPi);
+}
+
+vec3 environmentToDirection(vec2 uv)
+{
+    float phi = (uv.x - 0.5) * 2.0 * kPi, theta = uv.y * kPi;
+    return vec3(sin(theta) * cos(phi), cos(theta), sin(theta) * sin(phi));
+}
+
+/// Radiance that arrives from direction d when nothing is in the way.
+vec3 environmentRadiance(vec3 d)
+{
+    if (scene.environment_light == kNone)
+        return vec3(0.0);
+    vec2 uv = directionToEnvironment(d);
+    float rows = float(textureSize(environment_map, 0).y);
+    uv.y = clamp(uv.y, 0.5 / rows, 1.0 - 0.5 / rows);
+    return lights[scene.environment_light].emission * textureLod(environment_map, uv, 0.0).rgb;
+}
+
+/// Solid-angle density with which sampleLight() finds direction d, selection included.
+float environmentPdf(vec3 d)
+{
+    if (scene.environment_light == kNone)
+        return 0.0;
+    vec2 size = vec2(scene.environment_importance_size);
+    uvec2 texel = min(uvec2(directionToEnvironment(d) * size), scene.environment_importance_size - 1u);
+    float sin_theta = sqrt(max(1e-12, 1.0 - d.y * d.y));
+    float probability = environment_texels[texel.y * scene.environment_importance_size.x + texel.x].probability;
+    return lights[scene.environment_light].pmf * probability * size.x * size.y / (2.0 * kPi * kPi * sin_theta);
+}
+
+/// The same for a point on an emissive triangle seen at `distance` under `cosine`.
+float trianglePdf(uint light, float area, float distance, float cosine)
+{
+    return lights[light].pmf * distance * distance / max(area * cosine, 1e-20);
+}
+
+LightSample sampleEnvironment(float pmf, uvec2 pick, vec2 u)
+{
+    uvec2 size = scene.environment_importance_size;
+    uint i = toIndex(pick.x, size.x * size.y);
+    if (toUnitFloat(pick.y) >= environment_texels[i].threshold)
+        i = environment_texels[i].alias;
+    vec3 wi = environmentToDirection((vec2(i % size.x, i / size.x) + u) / vec2(size));
+    float pdf = environmentPdf(wi);
+    return pdf > 0.0 ? LightSample(wi, kInfinity, environmentRadiance(wi) / pdf, pdf) : kNoLight;
+}
+
+LightSample samplePunctual(Light light, vec3 point)
+{
+    if (light.kind == kLightDirectional)
+        return LightSample(-light.p1, kInfinity, light.emission / light.pmf, 0.0);
+    vec3 to_light = light.p0 - point;
+    float distance2 = max(dot(to_light, to_light), 1e-12);
+    float distance = sqrt(distance2);
+    vec3 wi = to_light / distance;
+    vec3 intensity = light.emission;
+    if (light.kind == kLightSpot)
+        intensity *= square(clamp(dot(light.p1, -wi) * light.p2.x + light.p2.y, 0.0, 1.0));
+    return LightSample(wi, distance, intensity / (distance2 * light.pmf), 0.0);
+}
+
+LightSample sampleTriangle(Light light, uint index, vec3 point, vec2 u)
+{
+    float r = sqrt(u.x);
+    vec3 weights = vec3(1.0 - r, r * (1.0 - u.y), r * u.y);
+    vec3 position = interpolate(weights, light.p0, light.p1, light.p2);
+    vec3 twice_area = cross(light.p1 - light.p0, light.p2 - light.p0);
+    float doubled = length(twice_area);
+    vec3 to_light = position - point;
+    float distance = length(to_light);
+    vec3 wi = to_light / max(distance, 1e-12);
+    float cosine = -dot(wi, twice_area) / doubled;
+    if (light.kind == kLightTriangleTwoSided)
+        cosine = abs(cosine);
+    if (cosine <= 0.0)
+        return kNoLight;
+    vec3 emission = light.emission;
+    if (light.material != kNone)
+    {
+        uvec3 v = triangles[light.triangle].vertices;
+        vec2 uv0 = interpolate(weights, vertices[v.x].uv0, vertices[v.y].uv0, vertices[v.z].uv0);
+        vec2 uv1 = interpolate(weights, vertices[v.x].uv1, vertices[v.y].uv1, vertices[v.z].uv1);
+        emission = surfaceEmission(light.material, uv0, uv1);
+    }
+    float pdf = trianglePdf(index, 0.5 * doubled, distance, cosine);
+    return LightSample(wi, distance, emission / pdf, pdf);
+}
+
+/// Picks a light by power and a point or direction on it. Uses three pairs of the sampler, whatever the light.
+LightSample sampleLight(vec3 point, inout Sampler s)
+{
+    uvec2 pick = nextBits(s);
+    vec2 u = nextPair(s);
+    uvec2 texel_pick = nextBits(s);
+    if (scene.light_count == 0u)
+        return kNoLight;
+    uint i = toIndex(pick.x, scene.light_count);
+    if (toUnitFloat(pick.y) >= light_aliases[i].threshold)
+        i = light_aliases[i].alias;
+    Light light = lights[i];
+    if (light.kind == kLightEnvironment)
+        return sampleEnvironment(light.pmf, texel_pick, u);
+    if (light.kind == kLightTriangle || light.kind == kLightTriangleTwoSided)
+        return sampleTriangle(light, i, point, u);
+    return samplePunctual(light, point);
+}
+
+/// Multiple importance sampling, power heuristic with exponent 2 (Veach & Guibas 1995).
+float misWeight(float pdf, float other)
+{
+    return pdf * pdf / (pdf * pdf + other * other);
+}
+
+#endif

@@ -1,0 +1,52 @@
+// Constants, frames and encodings. Functions only.
+#ifndef LIB_MATH_GLSL
+#define LIB_MATH_GLSL
+
+const float kPi = 3.14159265358979;
+const float kInvPi = 0.318309886183791;
+const float kInfinity = 3e38; // metres: farther than everything, and still finite when scaled by an ulp
+
+float square(float x) { return x * x; }
+float maxComponent(vec3 v) { return max(v.x, max(v.y, v.z)); }
+/// Rec. 709 luminance of linear RGB.
+float luminance(vec3 rgb) { return dot(rgb, vec3(0.2126, 0.7152, 0.0722)); }
+
+/// A right-handed orthonormal frame with z = n (Duff et al. 2017, "Building an Orthonormal Basis, Revisited").
+mat3 frameAround(vec3 n)
+{
+    float s = n.z >= 0.0 ? 1.0 : -1.0;
+    float a = -1.0 / (s + n.z);
+    float b = n.x * n.y * a;
+    return mat3(vec3(1.0 + s * n.x * n.x * a, s * b, -s * n.x), vec3(b, s + n.y * n.y * a, -n.y), n);
+}
+
+/// Octahedral encoding, e in [-1,1]^2, to a unit vector (Cigolle et al. 2014).
+vec3 octahedralToUnit(vec2 e)
+{
+    vec3 v = vec3(e, 1.0 - abs(e.x) - abs(e.y));
+    float t = max(-v.z, 0.0);
+    v.x += v.x >= 0.0 ? -t : t;
+    v.y += v.y >= 0.0 ? -t : t;
+    return normalize(v);
+}
+
+vec2 unitToOctahedral(vec3 v)
+{
+    vec2 e = v.xy / (abs(v.x) + abs(v.y) + abs(v.z));
+    return v.z >= 0.0 ? e : (1.0 - abs(e.yx)) * mix(vec2(-1.0), vec2(1.0), greaterThanEqual(e, vec2(0.0)));
+}
+
+uint packNormal(vec3 n) { return packSnorm2x16(unitToOctahedral(n)); }
+vec3 unpackNormal(uint bits) { return octahedralToUnit(unpackSnorm2x16(bits)); }
+
+/// Origin for a ray that leaves a surface: moved off it by a few ulps along the geometric normal
+/// (Waechter & Binder 2019, "A Fast and Robust Method for Avoiding Self-Intersection").
+vec3 offsetOrigin(vec3 p, vec3 n)
+{
+    const float kOrigin = 1.0 / 32.0, kFloatScale = 1.0 / 65536.0, kIntScale = 256.0;
+    ivec3 steps = ivec3(kIntScale * n);
+    vec3 moved = intBitsToFloat(floatBitsToInt(p) + mix(steps, -steps, lessThan(p, vec3(0.0))));
+    return mix(moved, p + kFloatScale * n, lessThan(abs(p), vec3(kOrigin)));
+}
+
+#endif

@@ -1,0 +1,48 @@
+// Steps that every path shares: frames at a vertex, absorption, the choice of sampler dimensions. Functions only.
+#ifndef LIB_PATH_GLSL
+#define LIB_PATH_GLSL
+#include "lib/bsdf.glsl"
+#include "lib/random.glsl"
+#include "lib/surface.glsl"
+#include "primary/primary.h"
+
+/// The sampler of a path at its vertex number `depth`.
+Sampler vertexSampler(uint path, uint depth, uint pixel_count, uint first_sample, uint seed)
+{
+    return Sampler(hash(seed, path % pixel_count), first_sample + path / pixel_count, kCameraDimensions + depth * kVertexDimensions);
+}
+
+/// What an absorbing medium leaves of light over `distance` metres (Beer-Lambert).
+vec3 mediumTransmittance(uint medium, float distance)
+{
+    return medium == kNone ? vec3(1.0) : exp(-materials[medium].absorption * distance);
+}
+
+bool enclosesMedium(Surface s, SurfaceMaterial m)
+{
+    return m.transmission > 0.0 && (m.flags & kMaterialThin) == 0u;
+}
+
+/// The medium a ray crossed to reach s: the one its path entered, or, when it started inside, that of s itself.
+uint crossedMedium(uint medium, Surface s, SurfaceMaterial m)
+{
+    return medium == kNone && !s.front && enclosesMedium(s, m) ? s.material : medium;
+}
+
+/// A direction and the geometry must agree on which side it leaves: shading normals alone would leak light.
+bool sidesAgree(Surface s, vec3 wi, float local_z)
+{
+    return dot(s.geometric_normal, wi) * local_z > 0.0;
+}
+
+/// The ray that leaves s along wi.
+Ray leavingRay(Surface s, vec3 wi, float t_max, uint path)
+{
+    vec3 side = dot(s.geometric_normal, wi) >= 0.0 ? s.geometric_normal : -s.geometric_normal;
+    return Ray(offsetOrigin(s.position, side), t_max, wi, path);
+}
+
+/// A shadow ray stops short of its light by this much of the distance, so that it does not meet the emitter itself.
+const float kShadowShortening = 1.0 - 1e-4;
+
+#endif

@@ -1,0 +1,19 @@
+// Descriptor set 0: the scene. The one place that names its blocks; lib/ functions and kernels read them.
+#ifndef LIB_SCENE_GLSL
+#define LIB_SCENE_GLSL
+#include "format/gpu_scene.h"
+
+layout(set = 0, binding = kSceneInfoBinding, scalar) uniform SceneBlock { SceneInfo scene; };
+layout(set = 0, binding = kBvhNodesBinding, scalar) readonly buffer BvhNodes { BvhNode bvh_nodes[]; };
+layout(set = 0, binding = kBvhTrianglesBinding, scalar) readonly buffer BvhTriangles { BvhTriangle bvh_triangles[]; };
+layout(set = 0, binding = kTrianglesBinding, scalar) readonly buffer Triangles { Triangle triangles[]; };
+layout(set = 0, binding = kVertexAttributesBinding, scalar) readonly buffer Vertices { VertexAttributes vertices[]; };
+layout(set = 0, binding = kMaterialsBinding, scalar) readonly buffer Materials { Material materials[]; };
+layout(set = 0, binding = kTextureRefsBinding, scalar) readonly buffer TextureRefs { TextureRef texture_refs[]; };
+layout(set = 0, binding = kLightsBinding, scalar) readonly buffer Lights { Light lights[]; };
+layout(set = 0, binding = kLightAliasesBinding, scalar) readonly buffer LightAliases { AliasEntry light_aliases[]; };
+layout(set = 0, binding = kEnvironmentTexelsBinding, scalar) readonly buffer EnvironmentTexels { EnvironmentTexel environment_texels[]; };
+layout(set = 0, binding = kTexturePagesBinding) uniform sampler2DArray texture_pages[kTexturePageCount];
+layout(set = 0, binding = kEnvironmentMapBinding) uniform sampler2D environment_map;
+
+#endif

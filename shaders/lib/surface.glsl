@@ -1,0 +1,147 @@
+// From a hit to the surface and its material there. Functions only.
+#ifndef LIB_SURFACE_GLSL
+#define LIB_SURFACE_GLSL
+#include "lib/math.glsl"
+#include "lib/scene.glsl"
+#include "lib/textures.glsl"
+
+struct Surface
+{
+    vec3 position;         // metres, world
+    vec3 geometric_normal; // unit, on the side the ray came from
+    vec3 normal;           // shading normal, unit, same side
+    bool front;            // the ray met the triangle's front
+    float area;            // square metres, of the triangle
+    vec2 uv0, uv1;
+    vec4 color;            // vertex colour
+    uint material;
+    uint triangle;
+};
+
+struct SurfaceMaterial // the material's values at one point, textures applied
+{
+    vec3 base_color;
+    float metallic;
+    float roughness;
+    float transmission;
+    float specular;
+    vec3 specular_color;
+    float ior;
+    vec3 emission; // W/(m^2 sr)
+    uint flags;    // kMaterial*
+};
+
+vec3 interpolate(vec3 weights, vec3 a, vec3 b, vec3 c) { return weights.x * a + weights.y * b + weights.z * c; }
+vec2 interpolate(vec3 weights, vec2 a, vec2 b, vec2 c) { return weights.x * a + weights.y * b + weights.z * c; }
+vec4 interpolate(vec3 weights, vec4 a, vec4 b, vec4 c) { return weights.x * a + weights.y * b + weights.z * c; }
+
+vec4 vertexColor(uint vertex)
+{
+    return vec4(unpackHalf2x16(vertices[vertex].color.x), unpackHalf2x16(vertices[vertex].color.y));
+}
+
+/// Tangent with the sign of the bitangent in w; layout as in gpu_scene.h.
+vec4 unpackTangent(uint bits)
+{
+    float x = clamp(float(bitfieldExtract(int(bits), 0, 16)) / 32767.0, -1.0, 1.0);
+    float y = clamp(float(bitfieldExtract(int(bits), 17, 15)) / 16383.0, -1.0, 1.0);
+    return vec4(octahedralToUnit(vec2(x, y)), (bits & 0x10000u) != 0u ? -1.0 : 1.0);
+}
+
+/// Shading normal bent by the material's normal map (glTF 2.0, 3.9.3).
+vec3 mappedNormal(vec3 normal, uvec3 v, vec3 weights, Surface s)
+{
+    vec4 tangent = unpackTangent(vertices[v.x].tangent);
+    vec3 t = interpolate(weights, tangent.xyz, unpackTangent(vertices[v.y].tangent).xyz, unpackTangent(vertices[v.z].tangent).xyz);
+    t -= normal * dot(normal, t);
+    if (dot(t, t) < 1e-12)
+        return normal;
+    t = normalize(t);
+    vec3 texel = sampleTexture(materials[s.material].normal_texture, s.uv0, s.uv1, 0.0).xyz * 2.0 - 1.0;
+    texel.xy *= materials[s.material].normal_scale;
+    vec3 bent = texel.x * t + texel.y * tangent.w * cross(normal, t) + texel.z * normal;
+    return dot(bent, bent) > 1e-12 ? normalize(bent) : normal;
+}
+
+/// The surface at BvhTriangle `slot`, met by a ray along `direction`.
+Surface surfaceAt(uint slot, vec2 barycentrics, vec3 direction)
+{
+    Surface s;
+    vec3 weights = vec3(1.0 - barycentrics.x - barycentrics.y, barycentrics);
+    vec3 v0 = bvh_triangles[slot].v0, v1 = bvh_triangles[slot].v1, v2 = bvh_triangles[slot].v2;
+    s.position = interpolate(weights, v0, v1, v2);
+    s.triangle = bvh_triangles[slot].triangle;
+    s.material = bvh_triangles[slot].material;
+    vec3 twice_area = cross(v1 - v0, v2 - v0);
+    float doubled = length(twice_area);
+    s.area = 0.5 * doubled;
+    s.geometric_normal = twice_area / doubled;
+    uvec3 v = triangles[s.triangle].vertices;
+    s.uv0 = interpolate(weights, vertices[v.x].uv0, vertices[v.y].uv0, vertices[v.z].uv0);
+    s.uv1 = interpolate(weights, vertices[v.x].uv1, vertices[v.y].uv1, vertices[v.z].uv1);
+    s.color = interpolate(weights, vertexColor(v.x), vertexColor(v.y), vertexColor(v.z));
+    vec3 normal = interpolate(weights, unpackNormal(vertices[v.x].normal), unpackNormal(vertices[v.y].normal),
+                              unpackNormal(vertices[v.z].normal));
+    s.normal = dot(normal, normal) > 1e-12 ? normalize(normal) : s.geometric_normal;
+    if (materials[s.material].normal_texture != kNone)
+        s.normal = mappedNormal(s.normal, v, weights, s);
+
+    s.front = dot(s.geometric_normal, direction) < 0.0;
+    if (!s.front)
+    {
+        s.geometric_normal = -s.geometric_normal;
+        s.normal = -s.normal;
+    }
+    // A shading normal that looks away from the viewer is bent back until it just sees him.
+    float facing = dot(s.normal, direction);
+    if (facing > -1e-3)
+        s.normal = normalize(s.normal - (facing + 1e-3) * direction);
+    return s;
+}
+
+vec3 surfaceEmission(uint material, vec2 uv0, vec2 uv1)
+{
+    vec3 emission = materials[material].emission;
+    uint ref = materials[material].emissive_texture;
+    return ref == kNone || emission == vec3(0.0) ? emission : emission * sampleTexture(ref, uv0, uv1, 0.0).rgb;
+}
+
+/// glTF 2.0 metallic-roughness and the extensions of gpu_scene.h's Material, at one point.
+SurfaceMaterial materialAt(Surface s)
+{
+    SurfaceMaterial m;
+    m.flags = materials[s.material].flags;
+    m.base_color = materials[s.material].base_color * s.color.rgb;
+    m.metallic = materials[s.material].metallic;
+    m.roughness = materials[s.material].roughness;
+    m.transmission = materials[s.material].transmission;
+    m.specular = materials[s.material].specular;
+    m.specular_color = materials[s.material].specular_color;
+    m.ior = materials[s.material].ior;
+    m.emission = surfaceEmission(s.material, s.uv0, s.uv1);
+
+    uint ref = materials[s.material].base_color_texture;
+    if (ref != kNone)
+        m.base_color *= sampleTexture(ref, s.uv0, s.uv1, 0.0).rgb;
+    ref = materials[s.material].metallic_roughness_texture;
+    if (ref != kNone)
+    {
+        vec4 texel = sampleTexture(ref, s.uv0, s.uv1, 0.0);
+        m.roughness *= texel.g;
+        m.metallic *= texel.b;
+    }
+    ref = materials[s.material].transmission_texture;
+    if (ref != kNone)
+        m.transmission *= sampleTexture(ref, s.uv0, s.uv1, 0.0).r;
+    ref = materials[s.material].specular_texture;
+    if (ref != kNone)
+        m.specular *= sampleTexture(ref, s.uv0, s.uv1, 0.0).a;
+    ref = materials[s.material].specular_color_texture;
+    if (ref != kNone)
+        m.specular_color *= sampleTexture(ref, s.uv0, s.uv1, 0.0).rgb;
+    return m;
+}
+
+bool emits(Surface s) { return s.front || (materials[s.material].flags & kMaterialDoubleSided) != 0u; }
+
+#endif

@@ -1,0 +1,62 @@
+// Texture lookups through TextureRefs. Functions only.
+#ifndef LIB_TEXTURES_GLSL
+#define LIB_TEXTURES_GLSL
+#include "lib/scene.glsl"
+
+// No device is asked for non-uniform descriptor indexing (software Vulkan lacks it): one constant index a case.
+#define TEXTURE_PAGE_CASE(index) case index: size = vec2(textureSize(texture_pages[index], 0)); break;
+vec2 texturePageSize(uint page)
+{
+    vec2 size = vec2(1.0);
+    switch (int(page))
+    {
+        TEXTURE_PAGE_CASE(0) TEXTURE_PAGE_CASE(1) TEXTURE_PAGE_CASE(2) TEXTURE_PAGE_CASE(3)
+        TEXTURE_PAGE_CASE(4) TEXTURE_PAGE_CASE(5) TEXTURE_PAGE_CASE(6) TEXTURE_PAGE_CASE(7)
+        TEXTURE_PAGE_CASE(8) TEXTURE_PAGE_CASE(9) TEXTURE_PAGE_CASE(10) TEXTURE_PAGE_CASE(11)
+        TEXTURE_PAGE_CASE(12) TEXTURE_PAGE_CASE(13) TEXTURE_PAGE_CASE(14) TEXTURE_PAGE_CASE(15)
+    }
+    return size;
+}
+#undef TEXTURE_PAGE_CASE
+
+#define TEXTURE_PAGE_CASE(index) case index: texel = textureLod(texture_pages[index], uvw, lod); break;
+vec4 sampleTexturePage(uint page, vec3 uvw, float lod)
+{
+    vec4 texel = vec4(1.0);
+    switch (int(page))
+    {
+        TEXTURE_PAGE_CASE(0) TEXTURE_PAGE_CASE(1) TEXTURE_PAGE_CASE(2) TEXTURE_PAGE_CASE(3)
+        TEXTURE_PAGE_CASE(4) TEXTURE_PAGE_CASE(5) TEXTURE_PAGE_CASE(6) TEXTURE_PAGE_CASE(7)
+        TEXTURE_PAGE_CASE(8) TEXTURE_PAGE_CASE(9) TEXTURE_PAGE_CASE(10) TEXTURE_PAGE_CASE(11)
+        TEXTURE_PAGE_CASE(12) TEXTURE_PAGE_CASE(13) TEXTURE_PAGE_CASE(14) TEXTURE_PAGE_CASE(15)
+    }
+    return texel;
+}
+#undef TEXTURE_PAGE_CASE
+
+/// The hardware sampler repeats; clamping and mirroring bend the coordinate before it (half a texel keeps bilinear
+/// footprints inside).
+float wrapCoordinate(float x, uint mode, float size)
+{
+    if (mode == kWrapMirror)
+        x = 1.0 - abs(1.0 - (x - 2.0 * floor(0.5 * x)));
+    return mode == kWrapRepeat ? x : clamp(x, 0.5 / size, 1.0 - 0.5 / size);
+}
+
+/// One texture at the surface coordinates; `lod` in levels, 0 the finest.
+vec4 sampleTexture(uint ref_index, vec2 uv0, vec2 uv1, float lod)
+{
+    TextureRef ref = texture_refs[ref_index];
+    vec3 uv = vec3((ref.sampling & kSampleUv1) != 0u ? uv1 : uv0, 1.0);
+    vec2 st = vec2(dot(ref.u_row, uv), dot(ref.v_row, uv));
+    if (ref.sampling != kWrapRepeat && ref.sampling != kSampleUv1)
+    {
+        vec2 size = texturePageSize(ref.page);
+        st = vec2(wrapCoordinate(st.x, ref.sampling & 3u, size.x), wrapCoordinate(st.y, (ref.sampling >> 2) & 3u, size.y));
+        if ((ref.sampling & kSampleNearest) != 0u)
+            st = (floor(st * size) + 0.5) / size;
+    }
+    return sampleTexturePage(ref.page, vec3(st, float(ref.layer)), lod);
+}
+
+#endif

@@ -1,0 +1,32 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "lib/math.glsl"
+#include "lib/random.glsl"
+#include "primary/primary.h"
+
+// Makes the camera rays, each through a random point of its pixel (box filter). One thread per ray.
+
+layout(local_size_x = kRaysGroupSize) in;
+layout(push_constant, scalar) uniform Params { CameraParams params; };
+
+layout(set = 1, binding = 0, scalar) writeonly buffer Rays { Ray rays[]; };
+
+void main()
+{
+    uint path = gl_GlobalInvocationID.x;
+    uint pixel_count = params.width * params.height;
+    if (path >= pixel_count * params.sample_count)
+        return;
+    uint pixel = path % pixel_count;
+    Sampler s = Sampler(hash(params.seed, pixel), params.first_sample + path / pixel_count, 0u);
+    vec2 position = vec2(pixel % params.width, pixel / params.width) + nextPair(s);
+    vec2 image = vec2(2.0, -2.0) * position / vec2(params.width, params.height) + vec2(-1.0, 1.0);
+    vec3 offset = image.x * params.right + image.y * params.up;
+    Ray ray = Ray(params.position, kInfinity, params.forward, path);
+    if (params.orthographic != 0u)
+        ray.origin += offset;
+    else
+        ray.direction = normalize(params.forward + offset);
+    rays[path] = ray;
+}

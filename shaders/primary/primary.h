@@ -1,0 +1,50 @@
+// Camera rays and the specular chains that follow them, up to the first surface that scatters.
+// Shared by runtime/stages/primary.cpp, direct.cpp, reference.cpp and shaders/**.
+#ifndef SHADERS_PRIMARY_H
+#define SHADERS_PRIMARY_H
+#include "rays/rays.h"
+
+GPU_NAMESPACE_BEGIN
+
+struct CameraParams // a ray through image position (x, y) in [-1,1]^2, y up, goes along forward + x right + y up
+{
+    vec3 position;
+    vec3 right; // scaled: half the image's width at distance 1 (perspective) or in metres (orthographic)
+    vec3 up;    // likewise half its height
+    vec3 forward;
+    uint width; // pixels
+    uint height;
+    uint orthographic; // 1: parallel rays from position + x right + y up
+    uint sample_count; // rays a pixel in this dispatch; path = sample * width * height + pixel
+    uint first_sample; // index of the first of them in the pixel's sequence
+    uint seed;
+};
+GPU_SIZE(CameraParams, 72);
+
+struct ChainParams
+{
+    uint depth;       // specular events before this one
+    uint depth_limit; // most specular events in a chain
+    uint pixel_count;
+    uint first_sample;
+    uint seed;
+};
+GPU_SIZE(ChainParams, 20);
+
+struct ShadingPoint // where a pixel's light is to be found: first vertex after E S* that scatters
+{
+    vec3 position;     // metres, world
+    uint slot;         // index into BvhTriangles, kNone: background, finished
+    vec3 direction;    // unit, of the ray that arrived
+    uint depth;        // specular events before it
+    vec3 throughput;   // of the chain, 1/probability of its choices included
+    vec2 barycentrics;
+};
+GPU_SIZE(ShadingPoint, 52);
+
+// Pairs of the pixel's sampler, so that no two uses share one: camera first, then the same number for every vertex.
+GPU_CONST uint kCameraDimensions = 1u;
+GPU_CONST uint kVertexDimensions = 8u;
+
+GPU_NAMESPACE_END
+#endif

@@ -1,0 +1,15 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "rays/rays.h"
+
+// Turns a queue's count into the group count of its indirect dispatches. One thread.
+
+layout(local_size_x = 1) in;
+
+layout(set = 1, binding = 0, scalar) buffer Queue { QueueSize queue; };
+
+void main()
+{
+    queue.groups = uvec3((queue.count + kRaysGroupSize - 1u) / kRaysGroupSize, 1u, 1u);
+}

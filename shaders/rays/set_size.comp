@@ -1,0 +1,17 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "rays/rays.h"
+
+// Gives a queue a length that the CPU knows. One thread.
+
+layout(local_size_x = 1) in;
+layout(push_constant, scalar) uniform Params { QueueParams params; };
+
+layout(set = 1, binding = 0, scalar) writeonly buffer Queue { QueueSize queue; };
+
+void main()
+{
+    queue.groups = uvec3((params.count + kRaysGroupSize - 1u) / kRaysGroupSize, 1u, 1u);
+    queue.count = params.count;
+}

@@ -1,0 +1,28 @@
+// The reference path tracer's state. Shared by runtime/stages/reference.cpp and shaders/reference/*.comp.
+#ifndef SHADERS_REFERENCE_H
+#define SHADERS_REFERENCE_H
+#include "primary/primary.h"
+
+GPU_NAMESPACE_BEGIN
+
+struct PathState
+{
+    vec3 throughput;
+    float pdf;       // per steradian, with which the current direction was chosen; 0: delta or camera
+    float travelled; // metres since the last scattering vertex (thin walls in between do not scatter)
+    uint medium;     // material index of the absorbing medium the path is in, or kNone
+};
+GPU_SIZE(PathState, 24);
+
+struct ShadeParams
+{
+    uint depth; // scattering vertices before this one
+    uint depth_limit;
+    uint pixel_count;
+    uint first_sample;
+    uint seed;
+};
+GPU_SIZE(ShadeParams, 20);
+
+GPU_NAMESPACE_END
+#endif

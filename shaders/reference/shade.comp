@@ -1,0 +1,133 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "lib/lights.glsl"
+#include "lib/path.glsl"
+#include "reference/reference.h"
+
+// One vertex of every path: adds what it emits, sends a shadow ray to one light, chooses the next direction.
+// One thread per ray of the queue. Unbiased: next-event estimation and BSDF sampling combined by multiple importance
+// sampling (Veach & Guibas 1995), Russian roulette, no clamping.
+
+layout(local_size_x = kRaysGroupSize) in;
+layout(push_constant, scalar) uniform Params { ShadeParams params; };
+
+layout(set = 1, binding = 0, scalar) readonly buffer Queue { QueueSize queue; };
+layout(set = 1, binding = 1, scalar) readonly buffer Rays { Ray rays[]; };
+layout(set = 1, binding = 2, scalar) readonly buffer Hits { Hit hits[]; };
+layout(set = 1, binding = 3, scalar) buffer States { PathState states[]; };
+layout(set = 1, binding = 4, scalar) buffer Radiance { vec3 radiance[]; };
+layout(set = 1, binding = 5, scalar) buffer NextQueue { QueueSize next_queue; };
+layout(set = 1, binding = 6, scalar) writeonly buffer NextRays { Ray next_rays[]; };
+layout(set = 1, binding = 7, scalar) buffer ShadowQueue { QueueSize shadow_queue; };
+layout(set = 1, binding = 8, scalar) writeonly buffer ShadowRays { ShadowRay shadow_rays[]; };
+
+const uint kRouletteDepth = 3u; // vertices that are always continued
+
+PathState loadState(uint path)
+{
+    if (params.depth == 0u)
+        return PathState(vec3(1.0), 0.0, 0.0, kNone);
+    return states[path];
+}
+
+void add(uint path, vec3 light)
+{
+    if (params.depth == 0u)
+        radiance[path] = light; // the first vertex starts the sum
+    else if (light != vec3(0.0))
+        radiance[path] += light;
+}
+
+/// Emitted light that arrives along the path, weighted against the shadow rays that could have found it too.
+vec3 emittedLight(Surface s, SurfaceMaterial m, vec3 direction, PathState state)
+{
+    if (m.emission == vec3(0.0) || !emits(s))
+        return vec3(0.0);
+    uint light = triangles[s.triangle].light;
+    if (state.pdf == 0.0 || light == kNone)
+        return m.emission;
+    float cosine = abs(dot(s.geometric_normal, direction));
+    return m.emission * misWeight(state.pdf, trianglePdf(light, s.area, state.travelled, cosine));
+}
+
+void sendShadowRay(Surface s, Bsdf b, mat3 frame, vec3 wo, PathState state, uint path, inout Sampler sampler_)
+{
+    LightSample light = sampleLight(s.position, sampler_);
+    vec3 wi = light.wi * frame;
+    if (light.weight == vec3(0.0) || !hasDensity(b) || !sidesAgree(s, light.wi, wi.z))
+        return;
+    float pdf;
+    vec3 f = evaluateBsdf(b, wo, wi, pdf);
+    vec3 carried = state.throughput * f * abs(wi.z) * light.weight;
+    if (light.pdf > 0.0)
+        carried *= misWeight(light.pdf, pdf);
+    if (carried == vec3(0.0))
+        return;
+    Ray ray = leavingRay(s, light.wi, light.distance * kShadowShortening, path);
+    shadow_rays[atomicAdd(shadow_queue.count, 1u)] = ShadowRay(ray, carried);
+}
+
+void continuePath(Surface s, SurfaceMaterial m, Bsdf b, mat3 frame, vec3 wo, PathState state, uint path, inout Sampler sampler_)
+{
+    vec2 u = nextPair(sampler_);
+    vec2 choice = nextPair(sampler_);
+    BsdfSample next = sampleBsdf(b, wo, choice.x, u);
+    vec3 wi = frame * next.wi;
+    if (next.weight == vec3(0.0) || !sidesAgree(s, wi, next.wi.z))
+        return;
+    state.throughput *= next.weight;
+    if (params.depth >= kRouletteDepth)
+    {
+        float survival = clamp(maxComponent(state.throughput), 0.05, 0.95);
+        if (choice.y >= survival)
+            return;
+        state.throughput /= survival;
+    }
+    if (!next.passed)
+    {
+        state.pdf = next.pdf;
+        state.travelled = 0.0;
+        if (next.wi.z < 0.0)
+            state.medium = s.front && enclosesMedium(s, m) ? s.material : kNone;
+    }
+    states[path] = state;
+    next_rays[atomicAdd(next_queue.count, 1u)] = leavingRay(s, wi, kInfinity, path);
+}
+
+void main()
+{
+    uint i = gl_GlobalInvocationID.x;
+    if (i >= queue.count)
+        return;
+    uint path = rays[i].path;
+    vec3 direction = rays[i].direction;
+    Hit hit = hits[i];
+    PathState state = loadState(path);
+    if (hit.slot == kNone)
+    {
+        vec3 light = state.throughput * environmentRadiance(direction);
+        add(path, state.pdf == 0.0 ? light : light * misWeight(state.pdf, environmentPdf(direction)));
+        return;
+    }
+
+    Surface s = surfaceAt(hit.slot, hit.barycentrics, direction);
+    SurfaceMaterial m = materialAt(s);
+    state.throughput *= mediumTransmittance(crossedMedium(state.medium, s, m), hit.t);
+    state.travelled += hit.t;
+    if ((m.flags & kMaterialUnlit) != 0u) // a picture of itself for the eye, black for everything else
+    {
+        add(path, state.pdf == 0.0 ? state.throughput * m.base_color : vec3(0.0));
+        return;
+    }
+    add(path, state.throughput * emittedLight(s, m, direction, state));
+    if (params.depth + 1u >= params.depth_limit)
+        return;
+
+    Bsdf b = bsdfAt(m, s.front);
+    mat3 frame = frameAround(s.normal);
+    vec3 wo = -direction * frame;
+    Sampler sampler_ = vertexSampler(path, params.depth, params.pixel_count, params.first_sample, params.seed);
+    sendShadowRay(s, b, frame, wo, state, path, sampler_);
+    continuePath(s, m, b, frame, wo, state, path, sampler_);
+}
