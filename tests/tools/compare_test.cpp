@@ -1,0 +1,113 @@
+// lumicut-compare as its user meets it: output, exit codes, files.
+#include "tests/tools/random_image.h"
+#include "tests/tools/run_program.h"
+#include "tools/image/write_image.h"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+namespace
+{
+
+ProgramRun compare(const std::string& arguments) { return runProgram(LUMICUT_COMPARE, arguments); }
+
+class Compare : public testing::Test
+{
+protected:
+    void SetUp() override
+    {
+        ASSERT_TRUE(writeExr(folder_ / "a.exr", randomImage(20, 10, 1, 2.0f)));
+        ASSERT_TRUE(writeExr(folder_ / "b.exr", randomImage(20, 10, 2, 2.0f)));
+        ASSERT_TRUE(writeExr(folder_ / "small.exr", randomImage(10, 10, 3)));
+    }
+    std::string file(const std::string& name) const { return (folder_ / name).string(); }
+    std::string pair() const { return file("a.exr") + " " + file("b.exr"); }
+
+    TemporaryFolder folder_;
+};
+
+TEST_F(Compare, JsonIsTheWholeOfStdout)
+{
+    const ProgramRun run = compare(pair() + " --json");
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    EXPECT_EQ(run.err, "");
+    const nlohmann::json json = nlohmann::json::parse(run.out, nullptr, false);
+    ASSERT_FALSE(json.is_discarded()) << run.out;
+    EXPECT_EQ(json["width"], 20);
+    EXPECT_EQ(json["nonfinite_pixels"]["test"], 0);
+    EXPECT_EQ(json["mean_ratio"].size(), 3u);
+    for (const char* key : {"rmse", "relmse", "relmse_trimmed", "hdr_flip", "ldr_flip"})
+        EXPECT_GT(json[key].get<double>(), 0) << key;
+    EXPECT_GT(json["relmse"], json["relmse_trimmed"]);
+}
+
+TEST_F(Compare, CropLooksAtThatPartOnly)
+{
+    ImageF changed = randomImage(20, 10, 1, 2.0f);
+    changed.rgb[3 * (5 * 20 + 15)] += 10;
+    ASSERT_TRUE(writeExr(folder_ / "changed.exr", changed));
+    const auto rmse = [&](const std::string& crop)
+    {
+        const ProgramRun run = compare(file("a.exr") + " " + file("changed.exr") + " --json --crop " + crop);
+        EXPECT_EQ(run.exit_code, 0) << run.err;
+        return nlohmann::json::parse(run.out)["rmse"].get<double>();
+    };
+    EXPECT_EQ(rmse("0,0,15,10"), 0);
+    EXPECT_NEAR(rmse("15,5,16,6"), 10 / std::sqrt(3.0), 1e-5);
+}
+
+TEST_F(Compare, WritesThePictureItWasAskedFor)
+{
+    const ProgramRun run = compare(pair() + " --png " + file("side.png") + " --flip-map");
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    EXPECT_EQ(fileBytes(folder_ / "side.png").substr(1, 3), "PNG");
+}
+
+TEST_F(Compare, NonFinitePixelsAreReported)
+{
+    ImageF broken = randomImage(20, 10, 2, 2.0f);
+    broken.rgb[7] = std::numeric_limits<float>::quiet_NaN();
+    ASSERT_TRUE(writeExr(folder_ / "nan.exr", broken));
+    const ProgramRun run = compare(file("a.exr") + " " + file("nan.exr") + " --json");
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    const nlohmann::json json = nlohmann::json::parse(run.out);
+    EXPECT_EQ(json["nonfinite_pixels"]["test"], 1);
+    EXPECT_EQ(json["nonfinite_pixels"]["reference"], 0);
+}
+
+struct Fault
+{
+    const char* name;
+    const char* arguments; // @ is the folder
+    int exit_code;
+    const char* words;
+};
+
+class CompareFaults : public Compare, public testing::WithParamInterface<Fault> {};
+
+TEST_P(CompareFaults, GetASentenceAndTheDocumentedCode)
+{
+    std::string arguments = GetParam().arguments;
+    for (size_t at = arguments.find('@'); at != std::string::npos; at = arguments.find('@'))
+        arguments.replace(at, 1, folder_.path().string());
+    const ProgramRun run = compare(arguments);
+    EXPECT_EQ(run.exit_code, GetParam().exit_code) << run.err;
+    EXPECT_EQ(run.out, "");
+    EXPECT_NE(run.err.find(GetParam().words), std::string::npos) << run.err;
+    EXPECT_EQ(run.err.find('\x1b'), std::string::npos);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, CompareFaults,
+    testing::Values(Fault{"NoArguments", "", 1, "REFERENCE"}, Fault{"UnknownOption", "@/a.exr @/b.exr --wrong", 1, "--wrong"},
+                    Fault{"ShortCrop", "@/a.exr @/b.exr --crop 1,2,3", 1, "--crop"},
+                    Fault{"CropOutside", "@/a.exr @/b.exr --crop 0,0,21,10", 1, "20 x 10"},
+                    Fault{"EmptyCrop", "@/a.exr @/b.exr --crop 5,5,5,6", 1, "does not lie"},
+                    Fault{"MissingFile", "@/a.exr @/none.exr", 2, "none.exr: error: The file cannot be opened: No such file"},
+                    Fault{"Folder", "@ @/b.exr", 2, "folder"},
+                    Fault{"SizesDiffer", "@/a.exr @/small.exr", 3, "10 x 10 pixels but the reference"},
+                    Fault{"NotAnImage", "/bin/sh @/b.exr", 3, "not an OpenEXR"},
+                    Fault{"UnwritablePicture", "@/a.exr @/b.exr --png @/no/side.png", 2, "No such file or directory"}),
+    [](const auto& test) { return std::string(test.param.name); });
+
+} // namespace

@@ -1,0 +1,188 @@
+// lumicut-compare: error metrics and difference pictures of two renderings.
+#include "tools/compare/flip.h"
+#include "tools/compare/metrics.h"
+#include "tools/compare/picture.h"
+#include "tools/image/read_exr.h"
+#include "tools/image/write_image.h"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+
+namespace
+{
+
+struct Options
+{
+    std::string reference, test, png;
+    float exposure = 0;
+    bool json = false;
+    bool flip_panel = false;
+    std::vector<uint32_t> crop; // X0,Y0,X1,Y1 or empty
+};
+
+struct Report
+{
+    uint32_t width, height;
+    Metrics metrics;
+    FlipExposures exposures;
+    FlipMap hdr, ldr;
+};
+
+int fail(const std::string& file, const Error& error)
+{
+    fmt::print(stderr, "{}: error: {}\n", file, error.message);
+    return int(error.code);
+}
+
+Result<ImageF> cropped(const ImageF& image, const std::vector<uint32_t>& crop)
+{
+    if (crop.empty())
+        return image;
+    if (crop[0] >= crop[2] || crop[1] >= crop[3] || crop[2] > image.width || crop[3] > image.height)
+        return Error{ExitCode::kUsage, fmt::format("--crop {},{},{},{} does not lie in the image of {} x {} pixels; give "
+                                                   "the left, top, right and bottom edge, the last two exclusive.",
+                                                   crop[0], crop[1], crop[2], crop[3], image.width, image.height)};
+    ImageF part{crop[2] - crop[0], crop[3] - crop[1], {}};
+    for (uint32_t y = crop[1]; y < crop[3]; ++y)
+    {
+        const auto row = image.rgb.begin() + std::ptrdiff_t(3 * (size_t(y) * image.width + crop[0]));
+        part.rgb.insert(part.rgb.end(), row, row + std::ptrdiff_t(3 * size_t(part.width)));
+    }
+    return part;
+}
+
+ImageF scaled(const ImageF& image, float factor)
+{
+    ImageF result = image;
+    for (float& value : result.rgb)
+        value *= factor;
+    return result;
+}
+
+std::string jsonText(const Report& report)
+{
+    const Metrics& m = report.metrics;
+    nlohmann::ordered_json json;
+    json["width"] = report.width;
+    json["height"] = report.height;
+    json["nonfinite_pixels"] = {{"reference", m.reference_nonfinite}, {"test", m.test_nonfinite}};
+    json["mean_reference"] = m.reference_mean;
+    json["mean_test"] = m.test_mean;
+    json["mean_ratio"] = m.mean_ratio;
+    json["rmse"] = m.rmse;
+    json["relmse"] = m.relmse;
+    json["relmse_trimmed"] = m.relmse_trimmed;
+    json["bias_z"] = m.bias_z;
+    json["hdr_flip"] = report.hdr.mean;
+    json["hdr_flip_exposures"] = {
+        {"start", report.exposures.start}, {"stop", report.exposures.stop}, {"count", report.exposures.count}};
+    json["ldr_flip"] = report.ldr.mean;
+    return json.dump(2) + "\n";
+}
+
+std::string plainText(const Report& report)
+{
+    const Metrics& m = report.metrics;
+    const auto rgb = [](const std::array<double, 3>& v) { return fmt::format("{:<11.6g} {:<11.6g} {:.6g}", v[0], v[1], v[2]); };
+    return fmt::format("size            {} x {}\n"
+                       "non-finite      {} reference, {} test pixels (taken as black)\n"
+                       "mean reference  {}\n"
+                       "mean test       {}\n"
+                       "mean ratio      {}\n"
+                       "bias z          {:.2f}\n"
+                       "RMSE            {:.6g}\n"
+                       "relMSE          {:.6g} (trimmed of the worst 0.1 %: {:.6g})\n"
+                       "HDR-FLIP        {:.6f} ({} exposures, {:.4f} to {:.4f})\n"
+                       "LDR-FLIP        {:.6f}\n",
+                       report.width, report.height, m.reference_nonfinite, m.test_nonfinite, rgb(m.reference_mean),
+                       rgb(m.test_mean), rgb(m.mean_ratio), m.bias_z, m.rmse, m.relmse, m.relmse_trimmed,
+                       report.hdr.mean, report.exposures.count, report.exposures.start, report.exposures.stop,
+                       report.ldr.mean);
+}
+
+Report measure(ImageF& reference, ImageF& test, float scale)
+{
+    Report report{reference.width, reference.height, {}, {}, {}, {}};
+    const uint64_t reference_nonfinite = blackenNonFinite(reference);
+    const uint64_t test_nonfinite = blackenNonFinite(test);
+    report.metrics = compareImages(reference, test);
+    report.metrics.reference_nonfinite = reference_nonfinite;
+    report.metrics.test_nonfinite = test_nonfinite;
+    report.exposures = flipExposures(reference);
+    report.hdr = hdrFlip(reference, test, report.exposures);
+    // The display transform is scale, clamp, sRGB encode; LDR-FLIP starts by decoding sRGB, so the curve cancels.
+    report.ldr = ldrFlip(scaled(reference, scale), scaled(test, scale));
+    return report;
+}
+
+int run(const Options& options)
+{
+    ImageF images[2];
+    const std::string* names[2] = {&options.reference, &options.test};
+    for (int i = 0; i < 2; ++i)
+    {
+        Result<ImageF> image = readExr(*names[i]);
+        if (!image)
+            return fail(*names[i], image.error());
+        images[i] = std::move(*image);
+    }
+    auto& [reference, test] = images;
+    if (reference.width != test.width || reference.height != test.height)
+        return fail(options.test, {ExitCode::kInvalid,
+                                   fmt::format("The image has {} x {} pixels but the reference {} has {} x {}; render both "
+                                               "in the same size.", test.width, test.height, options.reference,
+                                               reference.width, reference.height)});
+    for (int i = 0; i < 2; ++i)
+    {
+        Result<ImageF> part = cropped(images[i], options.crop);
+        if (!part)
+            return fail(*names[i], part.error());
+        images[i] = std::move(*part);
+    }
+
+    const float scale = std::exp2(options.exposure);
+    const Report report = measure(reference, test, scale);
+    if (!options.png.empty())
+    {
+        const Picture picture =
+            sideBySide(reference, test, scale, options.flip_panel ? std::optional<FlipMap>(report.hdr) : std::nullopt);
+        if (const Status written = writePng(options.png, picture.width, picture.height, 3, picture.rgb); !written)
+            return fail(options.png, written.error());
+    }
+    fmt::print("{}", options.json ? jsonText(report) : plainText(report));
+    return int(ExitCode::kOk);
+}
+
+} // namespace
+
+int main(int argc, char** argv)
+{
+    Options options;
+    CLI::App app{"Says how far the rendering TEST is from the rendering REFERENCE. Both are linear OpenEXR images of one "
+                 "size.\nExit codes: 0 done, 1 usage, 2 a file cannot be read or written, 3 not a matching image, "
+                 "4 out of memory, 5 unsupported image.",
+                 "lumicut-compare"};
+    app.set_version_flag("--version", "lumicut-compare " LUMICUT_VERSION);
+    app.add_option("REFERENCE", options.reference, "the image taken as right (.exr)")->required();
+    app.add_option("TEST", options.test, "the image to judge (.exr)")->required();
+    app.add_option("--png", options.png, "write reference, test and signed difference side by side (.png)");
+    app.add_flag("--flip-map", options.flip_panel, "add the HDR-FLIP error map to the picture");
+    app.add_option("--exposure", options.exposure, "stops of exposure for the picture and LDR-FLIP [0]")
+        ->check(CLI::Range(-64.0, 64.0));
+    app.add_option("--crop", options.crop, "look only at pixels X0 <= x < X1, Y0 <= y < Y1 (X0,Y0,X1,Y1)")
+        ->delimiter(',')
+        ->expected(4);
+    app.add_flag("--json", options.json, "print the result as JSON");
+    try
+    {
+        app.parse(argc, argv);
+    }
+    catch (const CLI::ParseError& problem)
+    {
+        return app.exit(problem) == 0 ? int(ExitCode::kOk) : int(ExitCode::kUsage);
+    }
+    return run(options);
+}

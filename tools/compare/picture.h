@@ -1,0 +1,18 @@
+// The picture that shows where two renderings differ.
+#pragma once
+#include "tools/compare/flip.h"
+#include "tools/image/image.h"
+
+#include <optional>
+
+struct Picture
+{
+    uint32_t width = 0;
+    uint32_t height = 0;
+    std::vector<uint8_t> rgb; // [3 * width * height], sRGB
+};
+
+/// Reference | test | difference, and the FLIP map where given, side by side. The first two are exposed by `scale` and
+/// sRGB-encoded. Difference: (t - r) / (r + 1 % of the reference's mean) of the channel means; white where equal, red
+/// where the test is brighter, blue where darker, full at 25 %. FLIP: black (none) over purple and orange to yellow (1).
+Picture sideBySide(const ImageF& reference, const ImageF& test, float scale, const std::optional<FlipMap>& flip);

@@ -1,0 +1,3 @@
+// The one translation unit that holds stb_image_write.
+#define STB_IMAGE_WRITE_IMPLEMENTATION
+#include <stb_image_write.h>
