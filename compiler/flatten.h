@@ -1,0 +1,18 @@
+// Puts every object where it stands: one static triangle mesh in world space, cleaned of what rays cannot use.
+#pragma once
+#include "compiler/import_gltf.h"
+
+/// Removes degenerate triangles (two corners in one place, no area) and repeats of a triangle (same corners, winding
+/// and material), counts them, repairs normals without a direction, and drops vertices that nothing uses.
+/// Objects that will move one day do not come here: they keep their own mesh.
+/// @return kInvalid where nothing is left, or positions leave the range of floats
+Result<WorldMesh> flatten(const ImportedScene& imported, ImportCounts& counts, std::vector<std::string>& warnings);
+
+struct Bounds
+{
+    gpu::vec3 min{};
+    gpu::vec3 max{};
+};
+
+/// Of the vertices; the mesh is not empty.
+Bounds bounds(const WorldMesh& mesh);

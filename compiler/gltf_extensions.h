@@ -1,0 +1,12 @@
+// Which glTF extensions the compiler honours.
+#pragma once
+#include "format/result.h"
+
+#include <nlohmann/json.hpp>
+
+#include <string>
+#include <vector>
+
+/// @return kUnsupported naming the first required extension that is not honoured; otherwise adds one warning that
+///         lists what the file uses and the compiler drops
+Status checkExtensions(const nlohmann::json& document, std::vector<std::string>& warnings);

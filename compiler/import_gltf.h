@@ -1,0 +1,25 @@
+// glTF in, scene out: everything that the file says, in object space and with images still encoded.
+#pragma once
+#include "compiler/gltf_scene.h"
+#include "compiler/images.h"
+#include "compiler/mesh.h"
+
+#include <vector>
+
+struct ImportedInstance
+{
+    size_t first_primitive = 0; // into ImportedScene::primitives
+    size_t primitive_count = 0;
+    Transform to_world;
+};
+
+struct ImportedScene
+{
+    SceneData scene;                        // without mesh and images
+    std::vector<MeshPrimitive> primitives;  // complete with normals; with tangents where a normal map needs them
+    std::vector<ImportedInstance> instances; // one object each
+    std::vector<ImageRequest> images;       // what SceneData::images is to hold
+};
+
+/// Reads geometry, materials, lights and cameras of the file's default scene.
+Result<ImportedScene> importScene(const GltfFile& file);
