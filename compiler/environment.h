@@ -13,6 +13,9 @@ EnvironmentImage defaultSky();
 /// The sun that goes with it.
 PunctualLight defaultSun();
 
+/// Mean over the sphere, W/(m^2 sr).
+gpu::vec3 averageRadiance(const EnvironmentImage& image);
+
 struct EnvironmentImportance
 {
     uint32_t width = 0;

@@ -22,8 +22,8 @@ public:
     ///         FORMAT.md says; kUnsupported for a newer major version or an unknown required chunk
     static Result<Package> open(const std::filesystem::path& path);
 
-    /// The same over bytes in memory (borrowed); for tests and the fuzzer. `name` stands in for the file name.
-    static Result<Package> openBytes(std::span<const std::byte> bytes, const std::string& name);
+    /// The same over bytes in memory (borrowed, 16-byte aligned); for tests and the fuzzer.
+    static Result<Package> openBytes(std::span<const std::byte> bytes);
 
     const lumicut::fb::Meta& meta() const;
 

@@ -31,7 +31,7 @@ struct WrittenChunk
     uint64_t raw_bytes;
 };
 
-/// Writes `chunks` (sorted by id and index, each pair once; META among them) to `path` by way of a temporary file
+/// Writes `chunks` (in any order, each id and index once, META among them; empty ones are left out) to `path` by way of a temporary file
 /// beside it, fsync and rename: at no time is there a partial file under `path`, and on failure no temporary is left.
 /// @return the table as written, or kIo with the system's reason
 Result<std::vector<WrittenChunk>> write(const std::filesystem::path& path, std::span<const ChunkSource> chunks,

@@ -1,0 +1,42 @@
+#include "compiler/alias_table.h"
+
+#include "format/check.h"
+
+#include <numeric>
+
+std::vector<gpu::AliasEntry> buildAliasTable(std::span<const double> weights)
+{
+    const double total = std::accumulate(weights.begin(), weights.end(), 0.0);
+    check(total > 0, "total weight {}", total);
+
+    std::vector<double> scaled; // 1 is an even share
+    std::vector<uint32_t> small;
+    std::vector<uint32_t> large;
+    for (uint32_t i = 0; i < weights.size(); ++i)
+    {
+        scaled.push_back(weights[i] / total * double(weights.size()));
+        (scaled[i] < 1 ? small : large).push_back(i);
+    }
+
+    std::vector<gpu::AliasEntry> table(weights.size());
+    while (!small.empty() && !large.empty())
+    {
+        const uint32_t poor = small.back();
+        const uint32_t rich = large.back();
+        small.pop_back();
+        table[poor] = {float(scaled[poor]), rich};
+        scaled[rich] -= 1 - scaled[poor];
+        if (scaled[rich] < 1)
+        {
+            large.pop_back();
+            small.push_back(rich);
+        }
+    }
+    // What is left differs from an even share by rounding only.
+    for (const std::vector<uint32_t>* rest : {&small, &large})
+    {
+        for (const uint32_t i : *rest)
+            table[i] = {1.0f, i};
+    }
+    return table;
+}

@@ -1,0 +1,168 @@
+#include "compiler/build_lights.h"
+
+#include "compiler/alias_table.h"
+#include "compiler/caustic_targets.h"
+#include "compiler/emission_average.h"
+#include "compiler/environment.h"
+#include "compiler/vector_math.h"
+
+#include <numbers>
+#include <numeric>
+
+namespace
+{
+constexpr double kPi = std::numbers::pi;
+// Lights below this share of the total would have a probability that single precision cannot divide by.
+constexpr double kLeastShare = 1e-30;
+
+struct Candidate
+{
+    gpu::Light light;
+    double power; // W, luminance
+};
+
+/// Radius of the sphere about the scene's box.
+double sceneRadius(const WorldMesh& mesh)
+{
+    if (mesh.positions.empty())
+        return 0;
+    gpu::vec3 low = mesh.positions[0];
+    gpu::vec3 high = low;
+    for (const gpu::vec3& p : mesh.positions)
+    {
+        low = min(low, p);
+        high = max(high, p);
+    }
+    return double(length(high - low)) / 2;
+}
+
+/// Solid angle of a spot's cone weighted by its falloff, which rises as a square from the rim to `width` inside it.
+double spotSolidAngle(double cos_outer, double width)
+{
+    const double rim = std::min(width, 1 - cos_outer);
+    const double full = std::max(0.0, 1 - cos_outer - width);
+    return 2 * kPi * (full + rim * rim * rim / (3 * width * width));
+}
+
+Candidate punctual(const PunctualLight& source, double scene_radius)
+{
+    Candidate c{.light = {.p0 = source.position,
+                          .kind = source.kind,
+                          .p1 = source.direction,
+                          .triangle = gpu::kNone,
+                          .p2 = {},
+                          .pmf = 0,
+                          .emission = source.intensity,
+                          .material = gpu::kNone},
+                .power = luminance(source.intensity)};
+    if (source.kind == gpu::kLightPoint)
+        c.power *= 4 * kPi;
+    else if (source.kind == gpu::kLightDirectional)
+        c.power *= kPi * scene_radius * scene_radius;
+    else
+    {
+        const float cos_outer = std::cos(source.outer_cone);
+        const float scale = 1 / std::max(0.001f, std::cos(source.inner_cone) - cos_outer);
+        c.light.p2 = {scale, -cos_outer * scale, 0};
+        c.power *= spotSolidAngle(cos_outer, 1 / double(scale));
+    }
+    return c;
+}
+
+Candidate emissiveTriangle(const SceneData& scene, uint32_t triangle)
+{
+    const uint32_t material_index = scene.mesh.materials[triangle];
+    const gpu::Material& material = scene.materials[material_index];
+    const gpu::uvec3& v = scene.mesh.triangles[triangle];
+    const gpu::vec3 p0 = scene.mesh.positions[v.x];
+    const gpu::vec3 p1 = scene.mesh.positions[v.y];
+    const gpu::vec3 p2 = scene.mesh.positions[v.z];
+    const bool textured = material.emissive_texture != gpu::kNone;
+    const bool two_sided = (material.flags & gpu::kMaterialDoubleSided) != 0;
+
+    gpu::vec3 mean = material.emission;
+    if (textured)
+    {
+        const gpu::vec3 texture = averageEmissiveTexture(scene, triangle);
+        mean = {mean.x * texture.x, mean.y * texture.y, mean.z * texture.z};
+    }
+    const double area = double(length(cross(p1 - p0, p2 - p0))) / 2;
+    return {.light = {.p0 = p0,
+                      .kind = two_sided ? gpu::kLightTriangleTwoSided : gpu::kLightTriangle,
+                      .p1 = p1,
+                      .triangle = triangle,
+                      .p2 = p2,
+                      .pmf = 0,
+                      .emission = material.emission,
+                      .material = textured ? material_index : gpu::kNone},
+            .power = kPi * area * luminance(mean) * (two_sided ? 2 : 1)};
+}
+
+bool emits(const gpu::Material& material)
+{
+    return (material.flags & gpu::kMaterialUnlit) == 0 && luminance(material.emission) > 0;
+}
+
+std::vector<Candidate> collect(const SceneData& scene)
+{
+    const double radius = sceneRadius(scene.mesh);
+    std::vector<Candidate> candidates;
+    for (const PunctualLight& light : scene.lights)
+        candidates.push_back(punctual(light, radius));
+    for (uint32_t i = 0; i < scene.mesh.triangles.size(); ++i)
+    {
+        if (emits(scene.materials[scene.mesh.materials[i]]))
+            candidates.push_back(emissiveTriangle(scene, i));
+    }
+    if (scene.environment)
+    {
+        const double over_sphere = 4 * kPi * luminance(averageRadiance(*scene.environment));
+        candidates.push_back({.light = {.p0 = {},
+                                        .kind = gpu::kLightEnvironment,
+                                        .p1 = {},
+                                        .triangle = gpu::kNone,
+                                        .p2 = {},
+                                        .pmf = 0,
+                                        .emission = {1, 1, 1},
+                                        .material = gpu::kNone},
+                              .power = kPi * radius * radius * over_sphere});
+    }
+    return candidates;
+}
+
+double totalPower(const std::vector<Candidate>& candidates)
+{
+    return std::accumulate(candidates.begin(), candidates.end(), 0.0,
+                           [](double sum, const Candidate& c) { return sum + c.power; });
+}
+} // namespace
+
+LightTables buildLights(const SceneData& scene)
+{
+    LightTables tables;
+    tables.triangle_lights.assign(scene.mesh.triangles.size(), gpu::kNone);
+    tables.caustic_targets = findCausticTargets(scene);
+
+    std::vector<Candidate> candidates = collect(scene);
+    const double least = totalPower(candidates) * kLeastShare;
+    std::erase_if(candidates, [&](const Candidate& c) { return !(c.power > least); });
+    const double total = totalPower(candidates);
+    tables.total_power = float(total);
+    if (candidates.empty())
+        return tables;
+
+    std::vector<double> powers;
+    for (Candidate& c : candidates)
+    {
+        c.light.pmf = float(c.power / total);
+        powers.push_back(c.power);
+        if (c.light.triangle != gpu::kNone)
+        {
+            tables.triangle_lights[c.light.triangle] = uint32_t(tables.lights.size());
+            ++tables.emissive_triangles;
+        }
+        tables.lights.push_back(c.light);
+    }
+    tables.aliases = buildAliasTable(powers);
+    return tables;
+}

@@ -1,0 +1,56 @@
+// The hierarchy while it is being built: a binary tree of pointers, leaves of few triangles.
+#pragma once
+#include "compiler/build_bvh.h"
+#include "compiler/vector_math.h"
+
+#include <array>
+#include <limits>
+#include <span>
+
+inline constexpr uint32_t kMaxLeafTriangles = 4; // measured: 2 and 4 are equally fast, 8 is slower
+
+struct Box
+{
+    gpu::vec3 low{std::numeric_limits<float>::max(), std::numeric_limits<float>::max(),
+                  std::numeric_limits<float>::max()};
+    gpu::vec3 high{std::numeric_limits<float>::lowest(), std::numeric_limits<float>::lowest(),
+                   std::numeric_limits<float>::lowest()};
+
+    void grow(const gpu::vec3& p)
+    {
+        low = min(low, p);
+        high = max(high, p);
+    }
+    void grow(const Box& b)
+    {
+        low = min(low, b.low);
+        high = max(high, b.high);
+    }
+    double halfArea() const
+    {
+        const double x = double(high.x) - low.x;
+        const double y = double(high.y) - low.y;
+        const double z = double(high.z) - low.z;
+        return x * y + y * z + z * x;
+    }
+};
+
+struct BinaryNode
+{
+    Box box;
+    std::array<BinaryNode*, 2> children{};               // null in a leaf
+    std::array<uint32_t, kMaxLeafTriangles> triangles{}; // ascending, without duplicates
+    uint32_t triangle_count = 0;                         // 0 in an inner node
+
+    bool isLeaf() const { return triangle_count > 0; }
+};
+
+/// Splits `box` (of all or part of triangle `v`) at `position` along axis `dimension` and shrinks both halves to the
+/// parts of the triangle inside them, rounded outwards.
+void splitTriangleBox(std::span<const gpu::vec3, 3> v, const Box& box, uint32_t dimension, float position, Box& left,
+                      Box& right);
+
+/// Turns the binary tree into 4-wide nodes so that the surface-area heuristic is least (Wald et al. 2008; the dynamic
+/// program of Ylitie et al. 2017, section 3.1), in depth-first order.
+/// @param padding metres added around every leaf's bounds
+Bvh collapse(BinaryNode& root, const WorldMesh& mesh, std::span<const uint32_t> triangle_flags, float padding);

@@ -1,0 +1,18 @@
+# Scene data in, GPU tables out: the hierarchy, the lights, the environment. Knows neither glTF nor the package file.
+find_package(embree 3.13 REQUIRED)
+find_package(OpenEXR REQUIRED)
+find_path(STB_INCLUDE_DIR stb_image.h PATH_SUFFIXES stb REQUIRED)
+
+add_library(lumicut_scene_build STATIC
+    ${CMAKE_CURRENT_LIST_DIR}/alias_table.cpp
+    ${CMAKE_CURRENT_LIST_DIR}/build_bvh.cpp
+    ${CMAKE_CURRENT_LIST_DIR}/bvh_collapse.cpp
+    ${CMAKE_CURRENT_LIST_DIR}/bvh_split.cpp
+    ${CMAKE_CURRENT_LIST_DIR}/build_lights.cpp
+    ${CMAKE_CURRENT_LIST_DIR}/caustic_targets.cpp
+    ${CMAKE_CURRENT_LIST_DIR}/emission_average.cpp
+    ${CMAKE_CURRENT_LIST_DIR}/environment.cpp
+    ${CMAKE_CURRENT_LIST_DIR}/environment_exr.cpp
+    ${CMAKE_CURRENT_LIST_DIR}/environment_hdr.cpp)
+target_include_directories(lumicut_scene_build SYSTEM PRIVATE ${STB_INCLUDE_DIR})
+target_link_libraries(lumicut_scene_build PUBLIC lumicut_options fmt::fmt PRIVATE embree OpenEXR::OpenEXR)

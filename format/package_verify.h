@@ -1,0 +1,90 @@
+// What a package's chunks must hold before shaders may index by them. FORMAT.md, "What a reader verifies", lists it.
+#pragma once
+#include "format/gpu_scene.h"
+#include "format/package_container.h"
+#include "format/package_generated.h"
+#include "format/result.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <initializer_list>
+#include <span>
+
+namespace package
+{
+/// The chunks of a package under their types. The spans refer into the file or the container's storage.
+struct Contents
+{
+    const lumicut::fb::Meta* meta = nullptr;
+    std::span<const gpu::BvhNode> bvh_nodes;
+    std::span<const gpu::BvhTriangle> bvh_triangles;
+    std::span<const gpu::Triangle> triangles;
+    std::span<const gpu::VertexAttributes> vertex_attributes;
+    std::span<const gpu::Material> materials;
+    std::span<const gpu::TextureRef> texture_refs;
+    std::span<const gpu::Light> lights;
+    std::span<const gpu::AliasEntry> light_aliases;
+    std::span<const gpu::EnvironmentTexel> environment_texels;
+    std::span<const gpu::vec4> environment_map;
+    std::span<const gpu::CausticTarget> caustic_targets;
+    std::array<std::span<const std::byte>, gpu::kTexturePageCount> texture_pages;
+};
+
+/// Gives every chunk its type: the FlatBuffer is verified, sizes are whole multiples, what must be there is there.
+Result<Contents> readContents(const Container& container);
+
+/// Verifies everything in `contents` that anybody indexes or divides by.
+Status verifyContents(const Contents& contents, bool parallel);
+
+// The parts of verifyContents(), one a file.
+Status verifyMeta(const Contents& contents);
+Status verifyBvhNodes(const Contents& contents);
+Status verifyBvhTriangles(const Contents& contents);
+Status verifyTriangles(const Contents& contents);
+Status verifyVertexAttributes(const Contents& contents);
+Status verifyMaterials(const Contents& contents);
+Status verifyTextureRefs(const Contents& contents);
+Status verifyLights(const Contents& contents);
+Status verifyEnvironment(const Contents& contents);
+Status verifyCausticTargets(const Contents& contents);
+
+/// kInvalid with a formatted sentence.
+template <typename... Args>
+Error invalid(fmt::format_string<Args...> format, Args&&... args)
+{
+    return {ExitCode::kInvalid, fmt::format(format, std::forward<Args>(args)...)};
+}
+
+inline bool isFinite(std::initializer_list<float> values)
+{
+    for (const float value : values)
+    {
+        if (!std::isfinite(value))
+            return false;
+    }
+    return true;
+}
+inline bool isFinite(const gpu::vec3& v)
+{
+    return isFinite({v.x, v.y, v.z});
+}
+inline bool isNonNegative(const gpu::vec3& v)
+{
+    return isFinite(v) && v.x >= 0 && v.y >= 0 && v.z >= 0;
+}
+inline bool isWithin(float value, float low, float high)
+{
+    return value >= low && value <= high;
+} // false for NaN
+inline float dot(const gpu::vec3& a, const gpu::vec3& b)
+{
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+inline bool isUnit(const gpu::vec3& v)
+{
+    return isFinite(v) && std::abs(dot(v, v) - 1) <= 2e-3f;
+}
+} // namespace package

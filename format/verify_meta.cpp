@@ -1,0 +1,69 @@
+// Bounds, cameras, names, caustic targets: what META itself promises.
+#include "format/package_verify.h"
+
+#include <numbers>
+
+namespace package
+{
+namespace
+{
+gpu::vec3 toVec3(const lumicut::fb::Vec3& v)
+{
+    return {v.x(), v.y(), v.z()};
+}
+
+Status verifyCamera(const lumicut::fb::Camera& camera, uint32_t index)
+{
+    if (!camera.position() || !camera.forward() || !camera.up())
+        return invalid("chunk META: camera {} lacks its position, forward or up vector", index);
+    const gpu::vec3 forward = toVec3(*camera.forward());
+    const gpu::vec3 up = toVec3(*camera.up());
+    if (!isFinite(toVec3(*camera.position())))
+        return invalid("chunk META: camera {} has a position that is not finite", index);
+    if (!isUnit(forward) || !isUnit(up) || std::abs(dot(forward, up)) > 1e-3f)
+        return invalid("chunk META: camera {}: its forward and up vectors are not orthonormal", index);
+
+    const float fov = camera.vertical_fov();
+    const float height = camera.orthographic_height();
+    const bool perspective = fov > 0 && fov < std::numbers::pi_v<float> && height == 0;
+    const bool orthographic = height > 0 && std::isfinite(height) && fov == 0;
+    if (!perspective && !orthographic)
+        return invalid(
+            "chunk META: camera {} has a field of view of {} radians and an orthographic height of {} m; one "
+            "must be 0, the other positive and a field of view below pi",
+            index, fov, height);
+    return Success{};
+}
+} // namespace
+
+Status verifyMeta(const Contents& contents)
+{
+    const lumicut::fb::Meta& meta = *contents.meta;
+    const gpu::vec3 low = toVec3(*meta.bounds_min());
+    const gpu::vec3 high = toVec3(*meta.bounds_max());
+    if (!isFinite(low) || !isFinite(high) || low.x > high.x || low.y > high.y || low.z > high.z)
+        return invalid("chunk META: the scene bounds are not finite or upside down");
+    if (meta.cameras()->size() == 0)
+        return invalid("chunk META: there is no camera");
+    for (uint32_t i = 0; i < meta.cameras()->size(); ++i)
+    {
+        if (Status camera = verifyCamera(*meta.cameras()->Get(i), i); !camera)
+            return camera;
+    }
+    if (meta.material_names()->size() != contents.materials.size())
+        return invalid("chunk META: {} material names for {} materials", meta.material_names()->size(),
+                       contents.materials.size());
+    return Success{};
+}
+
+Status verifyCausticTargets(const Contents& contents)
+{
+    for (size_t i = 0; i < contents.caustic_targets.size(); ++i)
+    {
+        const gpu::CausticTarget& target = contents.caustic_targets[i];
+        if (!isFinite(target.center) || !std::isfinite(target.radius) || target.radius <= 0)
+            return invalid("chunk CTGT: target {} is no finite sphere", i);
+    }
+    return Success{};
+}
+} // namespace package

@@ -1,0 +1,116 @@
+// Triangles, vertices, materials and texture references.
+#include "format/package_verify.h"
+
+namespace package
+{
+namespace
+{
+bool isFiniteHalf(uint32_t bits)
+{
+    return (bits & 0x7c00u) != 0x7c00u;
+}
+
+/// Factors are as glTF bounds them; what it leaves open need only be finite.
+Status verifyFactors(const gpu::Material& m, size_t index)
+{
+    const auto outside = [index](const char* what, const char* range)
+    { return invalid("chunk MATL: material {} has {} outside {}", index, what, range); };
+
+    for (const float c : {m.base_color.x, m.base_color.y, m.base_color.z, m.alpha})
+    {
+        if (!isWithin(c, 0, 1))
+            return outside("a base colour or alpha", "0 to 1");
+    }
+    if (!isWithin(m.metallic, 0, 1) || !isWithin(m.roughness, 0, 1))
+        return outside("metallic or roughness", "0 to 1");
+    if (!isWithin(m.transmission, 0, 1) || !isWithin(m.specular, 0, 1))
+        return outside("transmission or specular", "0 to 1");
+    if (!std::isfinite(m.ior) || (m.ior != 0 && m.ior < 1))
+        return outside("an index of refraction", "1 to infinity (or 0)");
+    if (!isNonNegative(m.emission) || !isNonNegative(m.specular_color) || !isNonNegative(m.absorption))
+        return outside("an emission, specular colour or absorption", "0 to infinity");
+    if (!std::isfinite(m.alpha_cutoff) || m.alpha_cutoff < 0 || !std::isfinite(m.normal_scale))
+        return outside("an alpha cutoff or normal scale", "the finite numbers");
+    return Success{};
+}
+} // namespace
+
+Status verifyTriangles(const Contents& contents)
+{
+    for (size_t i = 0; i < contents.triangles.size(); ++i)
+    {
+        const gpu::Triangle& t = contents.triangles[i];
+        for (const uint32_t vertex : {t.vertices.x, t.vertices.y, t.vertices.z})
+        {
+            if (vertex >= contents.vertex_attributes.size())
+                return invalid("chunk TRIS: triangle {} refers to vertex {}, chunk VATT has {}", i, vertex,
+                               contents.vertex_attributes.size());
+        }
+        if (t.light == gpu::kNone)
+            continue;
+        if (t.light >= contents.lights.size())
+            return invalid("chunk TRIS: triangle {} refers to light {}, chunk LITE has {}", i, t.light,
+                           contents.lights.size());
+        if (contents.lights[t.light].triangle != i)
+            return invalid("chunk TRIS: triangle {} claims light {}, which belongs to another", i, t.light);
+    }
+    return Success{};
+}
+
+Status verifyVertexAttributes(const Contents& contents)
+{
+    for (size_t i = 0; i < contents.vertex_attributes.size(); ++i)
+    {
+        const gpu::VertexAttributes& v = contents.vertex_attributes[i];
+        if (!isFinite({v.uv0.x, v.uv0.y, v.uv1.x, v.uv1.y}))
+            return invalid("chunk VATT: vertex {} has texture coordinates that are not finite", i);
+        if (!isFiniteHalf(v.color.x) || !isFiniteHalf(v.color.x >> 16) || !isFiniteHalf(v.color.y) ||
+            !isFiniteHalf(v.color.y >> 16))
+            return invalid("chunk VATT: vertex {} has a colour that is not finite", i);
+    }
+    return Success{};
+}
+
+Status verifyMaterials(const Contents& contents)
+{
+    constexpr uint32_t kAlphaModes = gpu::kMaterialAlphaMask | gpu::kMaterialAlphaBlend;
+    constexpr uint32_t kAllFlags = kAlphaModes | gpu::kMaterialDoubleSided | gpu::kMaterialUnlit | gpu::kMaterialThin;
+    for (size_t i = 0; i < contents.materials.size(); ++i)
+    {
+        const gpu::Material& m = contents.materials[i];
+        if (Status factors = verifyFactors(m, i); !factors)
+            return factors;
+        if ((m.flags & ~kAllFlags) != 0 || (m.flags & kAlphaModes) == kAlphaModes)
+            return invalid("chunk MATL: material {} has unknown or contradictory flags ({:#x})", i, m.flags);
+        for (const uint32_t texture :
+             {m.base_color_texture, m.metallic_roughness_texture, m.normal_texture, m.emissive_texture,
+              m.transmission_texture, m.specular_texture, m.specular_color_texture})
+        {
+            if (texture != gpu::kNone && texture >= contents.texture_refs.size())
+                return invalid("chunk MATL: material {} refers to texture {}, chunk TREF has {}", i, texture,
+                               contents.texture_refs.size());
+        }
+    }
+    return Success{};
+}
+
+Status verifyTextureRefs(const Contents& contents)
+{
+    const auto& pages = *contents.meta->texture_pages();
+    for (size_t i = 0; i < contents.texture_refs.size(); ++i)
+    {
+        const gpu::TextureRef& t = contents.texture_refs[i];
+        if (t.page >= pages.size())
+            return invalid("chunk TREF: texture {} refers to page {}, there are {}", i, t.page, pages.size());
+        if (t.layer >= pages.Get(t.page)->layers())
+            return invalid("chunk TREF: texture {} refers to layer {} of page {}, which has {}", i, t.layer, t.page,
+                           pages.Get(t.page)->layers());
+        if ((t.sampling & 3) > gpu::kWrapMirror || (t.sampling >> 2 & 3) > gpu::kWrapMirror ||
+            t.sampling >= 2 * gpu::kSampleUv1)
+            return invalid("chunk TREF: texture {} has unknown sampling bits ({:#x})", i, t.sampling);
+        if (!isFinite(t.u_row) || !isFinite(t.v_row))
+            return invalid("chunk TREF: texture {} has a coordinate transform that is not finite", i);
+    }
+    return Success{};
+}
+} // namespace package
