@@ -49,7 +49,7 @@ Result<std::vector<uint32_t>> readFaces(const draco::Mesh& mesh)
     std::vector<uint32_t> indices;
     indices.reserve(size_t(mesh.num_faces()) * 3);
     for (draco::FaceIndex face(0); face < mesh.num_faces(); ++face)
-        for (const draco::PointIndex point : mesh.face(face))
+        for (const draco::PointIndex& point : mesh.face(face))
         {
             if (point.value() >= mesh.num_points())
                 return Error{ExitCode::kInvalid, "a Draco triangle names a vertex that is not there"};

@@ -30,7 +30,7 @@ Transform fromTrs(const std::array<double, 3>& t, const std::array<double, 4>& r
     return result;
 }
 
-bool isFinite(const Transform& t)
+bool isFiniteTransform(const Transform& t)
 {
     const auto finite = [](double v) { return std::isfinite(v); };
     return std::all_of(t.linear.begin(), t.linear.end(), finite) &&
@@ -58,7 +58,7 @@ Result<Transform> localTransform(const tinygltf::Node& node, size_t index)
                          r.empty() ? std::array<double, 4>{0, 0, 0, 1} : std::array<double, 4>{r[0], r[1], r[2], r[3]},
                          s.empty() ? std::array<double, 3>{1, 1, 1} : std::array<double, 3>{s[0], s[1], s[2]});
     }
-    if (!isFinite(result))
+    if (!isFiniteTransform(result))
         return invalid("a node's transform is not finite", index);
     return result;
 }
@@ -94,7 +94,7 @@ Result<std::vector<Transform>> instanceTransforms(const tinygltf::Model& model, 
         transforms[i] = fromTrs({at(*t, 0, 0), at(*t, 1, 0), at(*t, 2, 0)},
                                 {at(*r, 0, 0), at(*r, 1, 0), at(*r, 2, 0), at(*r, 3, 1)},
                                 {at(*s, 0, 1), at(*s, 1, 1), at(*s, 2, 1)});
-        if (!isFinite(transforms[i]))
+        if (!isFiniteTransform(transforms[i]))
             return invalid("an instance's transform is not finite", index);
     }
     return transforms;

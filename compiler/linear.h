@@ -1,19 +1,10 @@
-// Small linear algebra for the compiler, on the vectors of the package format.
+// Linear algebra of importing: unit vectors that always exist, and affine transforms in double precision.
 #pragma once
-#include "format/gpu_types.h"
+#include "compiler/vector_math.h"
 
 #include <array>
 #include <cmath>
 
-inline gpu::vec3 operator+(gpu::vec3 a, gpu::vec3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-inline gpu::vec3 operator-(gpu::vec3 a, gpu::vec3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-inline gpu::vec3 operator*(gpu::vec3 a, float s) { return {a.x * s, a.y * s, a.z * s}; }
-inline float dot(gpu::vec3 a, gpu::vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-inline float length(gpu::vec3 a) { return std::sqrt(dot(a, a)); }
-inline gpu::vec3 cross(gpu::vec3 a, gpu::vec3 b)
-{
-    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
 inline bool isFinite(gpu::vec3 a) { return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z); }
 
 /// `a` at unit length, or `fallback` where it has none (zero, NaN, infinite).

@@ -1,0 +1,257 @@
+#include "compiler/compile.h"
+
+#include "compiler/build_bvh.h"
+#include "compiler/build_lights.h"
+#include "compiler/camera_views.h"
+#include "compiler/environment.h"
+#include "compiler/flatten.h"
+#include "compiler/gltf_material.h"
+#include "compiler/import_gltf.h"
+#include "compiler/linear.h"
+#include "compiler/package_meta.h"
+#include "compiler/texture_pages.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <new>
+
+#include <unistd.h>
+
+namespace
+{
+/// Times the stages and says when each is over.
+class Stopwatch
+{
+public:
+    Stopwatch(const CompileOptions& options, std::vector<StageTime>& stages) : options_(options), stages_(stages) {}
+
+    void stage(const char* name, const std::string& outcome)
+    {
+        const double now = total();
+        stages_.push_back({name, now - last_});
+        last_ = now;
+        if (options_.progress)
+            options_.progress(now, fmt::format("{}: {}", name, outcome));
+    }
+    double total() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
+
+private:
+    using Clock = std::chrono::steady_clock;
+    const CompileOptions& options_;
+    std::vector<StageTime>& stages_;
+    Clock::time_point start_ = Clock::now();
+    double last_ = 0;
+};
+
+Status addViewsAndLights(const CompileOptions& options, SceneData& scene)
+{
+    scene.cameras.insert(scene.cameras.begin(), options.views.begin(), options.views.end());
+    if (scene.cameras.empty())
+        scene.cameras.push_back(defaultView(bounds(scene.mesh)));
+    if (options.sun)
+        scene.lights.push_back(*options.sun);
+    if (!options.environment)
+        return Success{};
+    Result<EnvironmentImage> environment = loadEnvironment(*options.environment);
+    if (!environment)
+        return environment.error();
+    scene.environment = std::move(*environment);
+    return Success{};
+}
+
+LightTables lightsOrDefault(const CompileOptions& options, SceneData& scene)
+{
+    LightTables lights = buildLights(scene);
+    if (!lights.lights.empty())
+        return lights;
+    if (!options.default_light)
+    {
+        scene.warnings.push_back("the scene has no light at all: every picture of it will be black");
+        return lights;
+    }
+    scene.warnings.push_back("the scene has no light at all: it gets the default sky and sun (--no-default-light leaves it dark)");
+    scene.environment = defaultSky();
+    scene.lights = {defaultSun()};
+    return buildLights(scene);
+}
+
+/// Alpha only where a triangle's coverage can be below 1: by its material or its vertices' colours.
+std::vector<uint32_t> triangleFlags(const SceneData& scene)
+{
+    const std::vector<uint32_t> by_material = materialTriangleFlags(scene);
+    constexpr uint32_t kOpaque = 0x3c00; // 1 as a half
+    std::vector<uint32_t> flags(scene.mesh.triangles.size());
+    for (size_t i = 0; i < flags.size(); ++i)
+    {
+        const uint32_t material = scene.mesh.materials[i];
+        const gpu::uvec3 t = scene.mesh.triangles[i];
+        flags[i] = by_material[material];
+        if ((scene.materials[material].flags & (gpu::kMaterialAlphaMask | gpu::kMaterialAlphaBlend)) != 0)
+            for (const uint32_t v : {t.x, t.y, t.z})
+                if (scene.mesh.attributes[v].color.y >> 16 != kOpaque)
+                    flags[i] |= gpu::kTriangleAlpha;
+    }
+    return flags;
+}
+
+std::vector<gpu::Triangle> packTriangles(const SceneData& scene, const LightTables& lights)
+{
+    std::vector<gpu::Triangle> triangles(scene.mesh.triangles.size());
+    for (size_t i = 0; i < triangles.size(); ++i)
+        triangles[i] = {scene.mesh.triangles[i], lights.triangle_lights[i]};
+    return triangles;
+}
+
+template <typename T>
+void addChunk(std::vector<package::ChunkSource>& chunks, uint32_t id, const std::vector<T>& data, uint32_t index = 0)
+{
+    if (!data.empty())
+        chunks.push_back({id, index, std::as_bytes(std::span(data))});
+}
+
+Result<std::vector<package::WrittenChunk>> writePackage(const CompileOptions& options, const SceneData& scene,
+                                                        const Bvh& bvh, const LightTables& lights,
+                                                        const TexturePages& textures,
+                                                        const EnvironmentImportance* importance,
+                                                        const lumicut::fb::MetaT& meta)
+{
+    const std::vector<uint8_t> meta_bytes = encodeMeta(meta);
+    const std::vector<gpu::Triangle> triangles = packTriangles(scene, lights);
+    std::vector<package::ChunkSource> chunks;
+    addChunk(chunks, package::kMetaChunk, meta_bytes);
+    addChunk(chunks, package::kBvhNodesChunk, bvh.nodes);
+    addChunk(chunks, package::kBvhTrianglesChunk, bvh.triangles);
+    addChunk(chunks, package::kTrianglesChunk, triangles);
+    addChunk(chunks, package::kVertexAttributesChunk, scene.mesh.attributes);
+    addChunk(chunks, package::kMaterialsChunk, scene.materials);
+    addChunk(chunks, package::kTextureRefsChunk, textures.refs);
+    for (uint32_t page = 0; page < textures.pages.size(); ++page)
+        addChunk(chunks, package::kTexturePageChunk, textures.pages[page].texels, page);
+    addChunk(chunks, package::kLightsChunk, lights.lights);
+    addChunk(chunks, package::kLightAliasesChunk, lights.aliases);
+    addChunk(chunks, package::kCausticTargetsChunk, lights.caustic_targets);
+    if (importance != nullptr)
+    {
+        addChunk(chunks, package::kEnvironmentChunk, scene.environment->texels);
+        addChunk(chunks, package::kEnvironmentTexelsChunk, importance->texels);
+    }
+    std::sort(chunks.begin(), chunks.end(), [](const auto& a, const auto& b)
+              { return a.id != b.id ? a.id < b.id : a.index < b.index; });
+    return package::write(options.output, chunks, {options.zstd_level});
+}
+
+void summarize(const SceneData& scene, CompileReport& report)
+{
+    for (const PunctualLight& light : scene.lights)
+        ++(light.kind == gpu::kLightPoint  ? report.point_lights
+           : light.kind == gpu::kLightSpot ? report.spot_lights
+                                           : report.directional_lights);
+    report.images = uint32_t(scene.images.size());
+    report.generated_tangents = scene.counts.generated_tangents;
+    report.dropped_primitives = scene.counts.dropped_primitives;
+}
+
+Result<CompileReport> runPipeline(const CompileOptions& options)
+{
+    CompileReport report;
+    Stopwatch watch(options, report.stages);
+
+    const Result<GltfFile> file = readGltf(options.input);
+    if (!file)
+        return file.error();
+    watch.stage("read", fmt::format("{} meshes, {} materials, {} images", file->model.meshes.size(),
+                                    file->model.materials.size(), file->images.size()));
+
+    Result<ImportedScene> imported = importScene(*file);
+    if (!imported)
+        return imported.error();
+    SceneData& scene = imported->scene;
+    watch.stage("geometry", fmt::format("{} primitives, {} objects", imported->primitives.size(), imported->instances.size()));
+
+    Result<std::vector<TextureImage>> images = decodeImages(*file, imported->images);
+    if (!images)
+        return images.error();
+    scene.images = std::move(*images);
+    watch.stage("images", fmt::format("{} decoded", scene.images.size()));
+
+    Result<WorldMesh> mesh = flatten(*imported, scene.counts, scene.warnings);
+    if (!mesh)
+        return mesh.error();
+    scene.mesh = std::move(*mesh);
+    imported->primitives = {};
+    watch.stage("mesh", fmt::format("{} triangles, {} vertices", scene.mesh.triangles.size(), scene.mesh.positions.size()));
+
+    if (const Status status = addViewsAndLights(options, scene); !status)
+        return status.error();
+    const LightTables lights = lightsOrDefault(options, scene);
+    std::optional<EnvironmentImportance> importance;
+    if (scene.environment)
+        importance = buildImportance(*scene.environment);
+    const EnvironmentImportance* const sky = importance ? &*importance : nullptr;
+    watch.stage("lights", fmt::format("{} lights, {} caustic targets", lights.lights.size(), lights.caustic_targets.size()));
+
+    const Bvh bvh = buildBvh(scene.mesh, triangleFlags(scene));
+    watch.stage("bvh", fmt::format("{} nodes, SAH cost {:.1f}, depth {}", bvh.nodes.size(), bvh.sah_cost, bvh.depth));
+
+    const TexturePages textures = buildTexturePages(scene.images, scene.texture_uses);
+    if (textures.resized > 0)
+        scene.warnings.push_back(fmt::format("{} images were resized so that {} texture pages suffice", textures.resized,
+                                             gpu::kTexturePageCount));
+    watch.stage("textures", fmt::format("{} images, {} pages", scene.images.size(), textures.pages.size()));
+
+    report.meta = makeMeta(options, scene, bvh, lights, textures, sky);
+    auto chunks = writePackage(options, scene, bvh, lights, textures, sky, report.meta);
+    if (!chunks)
+        return chunks.error();
+    report.chunks = std::move(*chunks);
+    watch.stage("write", options.output.filename().string());
+    summarize(scene, report);
+    report.total_seconds = watch.total();
+    return report;
+}
+} // namespace
+
+Result<CompileReport> compile(const CompileOptions& options)
+{
+    if (const Status status = checkPaths(options); !status)
+        return status.error();
+    try
+    {
+        return runPipeline(options);
+    }
+    catch (const std::bad_alloc&)
+    {
+        return Error{ExitCode::kDevice, "there is not enough memory to compile this scene"};
+    }
+    catch (const std::exception& e) // of a third-party library
+    {
+        return Error{ExitCode::kInvalid, fmt::format("it cannot be read: {}", e.what())};
+    }
+}
+
+Status checkPaths(const CompileOptions& options)
+{
+    const auto suffix = [](const std::filesystem::path& path)
+    {
+        std::string text = path.extension().string();
+        std::transform(text.begin(), text.end(), text.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? char(c + 32) : c; });
+        return text;
+    };
+    if (suffix(options.input) != ".gltf" && suffix(options.input) != ".glb")
+        return Error{ExitCode::kUsage, "the input must be a .gltf or .glb file"};
+    if (suffix(options.output) != ".lumi")
+        return Error{ExitCode::kUsage, fmt::format("the output \"{}\" must end in .lumi", options.output.string())};
+    if (options.environment && suffix(*options.environment) != ".exr" && suffix(*options.environment) != ".hdr")
+        return Error{ExitCode::kUsage, fmt::format("the environment \"{}\" must be an .exr or .hdr file", options.environment->string())};
+    std::error_code error;
+    if (std::filesystem::is_directory(options.output, error))
+        return Error{ExitCode::kIo, fmt::format("the output \"{}\" is a folder; name a file", options.output.string())};
+    const std::filesystem::path folder = options.output.has_parent_path() ? options.output.parent_path() : ".";
+    if (!std::filesystem::is_directory(folder, error))
+        return Error{ExitCode::kIo, fmt::format("the output folder \"{}\" does not exist; make it first", folder.string())};
+    if (access(folder.c_str(), W_OK) != 0)
+        return Error{ExitCode::kIo, fmt::format("the output folder \"{}\" cannot be written to", folder.string())};
+    return Success{};
+}

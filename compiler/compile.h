@@ -1,0 +1,53 @@
+// The compiler's pipeline: one glTF scene in, one package out.
+#pragma once
+#include "compiler/scene_data.h"
+#include "format/package_generated.h"
+#include "format/package_write.h"
+#include "format/result.h"
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+struct CompileOptions
+{
+    std::filesystem::path input;  // .gltf or .glb
+    std::filesystem::path output; // .lumi
+    std::optional<std::filesystem::path> environment;
+    std::optional<PunctualLight> sun;
+    std::vector<CameraView> views;  // come before the file's own cameras
+    bool default_light = true;      // give a scene without any light a sky and a sun
+    int zstd_level = 0;             // 0: no compression
+    std::vector<std::string> text;  // the options as given, for the package's provenance
+    std::function<void(double seconds, const std::string& line)> progress; // after each stage; may be empty
+};
+
+struct StageTime
+{
+    std::string name;
+    double seconds = 0;
+};
+
+/// What was made: the package's META and the sizes and times that do not belong into it.
+struct CompileReport
+{
+    lumicut::fb::MetaT meta;
+    uint32_t point_lights = 0;
+    uint32_t spot_lights = 0;
+    uint32_t directional_lights = 0;
+    uint32_t images = 0;
+    uint64_t generated_tangents = 0;
+    uint64_t dropped_primitives = 0;
+    std::vector<package::WrittenChunk> chunks;
+    std::vector<StageTime> stages;
+    double total_seconds = 0;
+};
+
+/// Compiles `options.input` and writes `options.output`, all or nothing. Equal input and options give equal bytes.
+/// @return errors as the stages give them; kDevice where memory runs out
+Result<CompileReport> compile(const CompileOptions& options);
+
+/// What can be known before any work: suffixes, and whether the output's folder can be written to.
+Status checkPaths(const CompileOptions& options);

@@ -1,0 +1,169 @@
+// lumicut-compile: the command line.
+#include "compiler/camera_views.h"
+#include "compiler/compile.h"
+#include "compiler/linear.h"
+#include "compiler/report.h"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <charconv>
+#include <fstream>
+
+namespace
+{
+struct Arguments
+{
+    std::string input;
+    std::string output;
+    std::string environment;
+    std::string sun;
+    std::vector<std::string> views;
+    std::string report;
+    std::string compress = "none";
+    bool no_default_light = false;
+    bool quiet = false;
+};
+
+int fail(const std::string& where, const Error& error)
+{
+    fmt::print(stderr, "{}: error: {}\n", where, error.message);
+    return int(error.code);
+}
+
+void declare(CLI::App& app, Arguments& a)
+{
+    app.add_option("scene", a.input, "Scene to compile (.gltf or .glb)")->required();
+    app.add_option("-o,--output", a.output, "Package to write (default: the scene's name with .lumi)");
+    app.add_option("--env", a.environment, "Environment: equirectangular .exr or .hdr, W/(m^2 sr)");
+    app.add_option("--sun", a.sun, "Sun: DX,DY,DZ,LUX; the direction is the way its light travels");
+    app.add_option("--view", a.views,
+                   "Camera: NAME=EX,EY,EZ,TX,TY,TZ,YFOV; eye, target (metres), vertical field of view (degrees). Repeatable")
+        ->take_all();
+    app.add_flag("--no-default-light", a.no_default_light, "Leave a scene without any light dark");
+    app.add_option("--report", a.report, "Write what was made as JSON");
+    app.add_option("--compress", a.compress, "none, zstd or zstd:LEVEL (1-19)")->capture_default_str();
+    app.add_flag("-q,--quiet", a.quiet, "Print errors only");
+    app.set_version_flag("--version", "lumicut-compile " LUMICUT_VERSION);
+}
+
+Result<int> parseCompression(const std::string& text)
+{
+    constexpr int kDefaultLevel = 3;
+    if (text == "none")
+        return 0;
+    if (text == "zstd")
+        return kDefaultLevel;
+    int level = 0;
+    const std::string_view digits = text.starts_with("zstd:") ? std::string_view(text).substr(5) : "";
+    const auto [end, failure] = std::from_chars(digits.data(), digits.data() + digits.size(), level);
+    if (failure != std::errc() || end != digits.data() + digits.size() || level < 1 || level > 19)
+        return Error{ExitCode::kUsage, fmt::format("--compress \"{}\" is not none, zstd or zstd:LEVEL with a level of 1 to 19", text)};
+    return level;
+}
+
+Result<PunctualLight> parseSun(const std::string& text)
+{
+    const Result<std::vector<float>> n = parseNumbers(text, 4);
+    if (!n)
+        return Error{ExitCode::kUsage, fmt::format("--sun: {} (DX,DY,DZ,LUX)", n.error().message)};
+    const gpu::vec3 direction{(*n)[0], (*n)[1], (*n)[2]};
+    const float lux = (*n)[3];
+    if (length(direction) == 0 || !(lux > 0))
+        return Error{ExitCode::kUsage, fmt::format("--sun \"{}\" needs a direction and a positive illuminance", text)};
+    PunctualLight sun;
+    sun.kind = gpu::kLightDirectional;
+    sun.direction = normalizeOr(direction, {0, -1, 0});
+    sun.intensity = {lux, lux, lux};
+    return sun;
+}
+
+/// Options that shape the package, in a fixed order; paths without folders.
+std::vector<std::string> provenance(const Arguments& a)
+{
+    std::vector<std::string> text;
+    if (!a.environment.empty())
+        text.push_back("--env " + std::filesystem::path(a.environment).filename().string());
+    if (!a.sun.empty())
+        text.push_back("--sun " + a.sun);
+    for (const std::string& view : a.views)
+        text.push_back("--view " + view);
+    if (a.no_default_light)
+        text.push_back("--no-default-light");
+    if (a.compress != "none")
+        text.push_back("--compress " + a.compress);
+    return text;
+}
+
+Result<CompileOptions> toOptions(const Arguments& a)
+{
+    CompileOptions options;
+    options.input = a.input;
+    options.output = a.output.empty() ? std::filesystem::path(a.input).replace_extension(".lumi") : std::filesystem::path(a.output);
+    options.default_light = !a.no_default_light;
+    options.text = provenance(a);
+    if (!a.environment.empty())
+        options.environment = a.environment;
+    const Result<int> level = parseCompression(a.compress);
+    if (!level)
+        return level.error();
+    options.zstd_level = *level;
+    if (!a.sun.empty())
+    {
+        const Result<PunctualLight> sun = parseSun(a.sun);
+        if (!sun)
+            return sun.error();
+        options.sun = *sun;
+    }
+    for (const std::string& text : a.views)
+    {
+        Result<CameraView> view = parseView(text);
+        if (!view)
+            return view.error();
+        options.views.push_back(std::move(*view));
+    }
+    if (!a.quiet)
+        options.progress = [](double seconds, const std::string& line)
+        { fmt::print(stderr, "[{:5.2f} s] {}\n", seconds, line); };
+    return options;
+}
+
+Status writeReport(const std::string& path, const std::string& json)
+{
+    std::ofstream stream(path, std::ios::binary);
+    if (!(stream << json << std::flush))
+        return Error{ExitCode::kIo, "the report cannot be written"};
+    return Success{};
+}
+} // namespace
+
+int main(int argc, char** argv)
+{
+    CLI::App app{"Compiles a glTF scene into a package for lumicut-play.", "lumicut-compile"};
+    Arguments arguments;
+    declare(app, arguments);
+    try
+    {
+        app.parse(argc, argv);
+    }
+    catch (const CLI::ParseError& e)
+    {
+        return app.exit(e) == 0 ? int(ExitCode::kOk) : int(ExitCode::kUsage);
+    }
+    const Result<CompileOptions> options = toOptions(arguments);
+    if (!options)
+        return fail("lumicut-compile", options.error());
+    const Result<CompileReport> report = compile(*options);
+    if (!report)
+        return fail(arguments.input, report.error());
+    if (!arguments.quiet)
+    {
+        for (const std::string& warning : report->meta.provenance->warnings)
+            fmt::print(stderr, "{}: warning: {}\n", arguments.input, warning);
+        fmt::print("{}", summaryText(*report, *options));
+    }
+    if (!arguments.report.empty())
+        if (const Status status = writeReport(arguments.report, reportJson(*report, *options)); !status)
+            return fail(arguments.report, status.error());
+    return int(ExitCode::kOk);
+}

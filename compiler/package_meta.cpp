@@ -1,0 +1,102 @@
+#include "compiler/package_meta.h"
+
+#include "compiler/flatten.h"
+
+#include <algorithm>
+
+namespace
+{
+using namespace lumicut;
+
+std::unique_ptr<fb::Vec3> box(gpu::vec3 v) { return std::make_unique<fb::Vec3>(v.x, v.y, v.z); }
+
+std::unique_ptr<fb::StatisticsT> statistics(const SceneData& scene, const Bvh& bvh, const LightTables& lights)
+{
+    auto s = std::make_unique<fb::StatisticsT>();
+    s->triangles = scene.mesh.triangles.size();
+    s->vertices = scene.mesh.positions.size();
+    s->bvh_nodes = bvh.nodes.size();
+    s->bvh_triangles = bvh.triangles.size();
+    s->bvh_sah_cost = bvh.sah_cost;
+    s->bvh_depth = bvh.depth;
+    s->traversal_stack = bvh.traversal_stack;
+    s->degenerate_triangles = scene.counts.degenerate_triangles;
+    s->duplicate_triangles = scene.counts.duplicate_triangles;
+    s->generated_normals = scene.counts.generated_normals;
+    s->punctual_lights = uint32_t(std::count_if(lights.lights.begin(), lights.lights.end(),
+                                                [](const gpu::Light& l) { return l.kind <= gpu::kLightDirectional; }));
+    s->emissive_triangles = lights.emissive_triangles;
+    s->total_light_power = lights.total_power;
+    return s;
+}
+
+std::unique_ptr<fb::CameraT> camera(const CameraView& view)
+{
+    auto c = std::make_unique<fb::CameraT>();
+    c->name = view.name;
+    c->position = box(view.position);
+    c->forward = box(view.forward);
+    c->up = box(view.up);
+    c->vertical_fov = view.vertical_fov;
+    c->orthographic_height = view.orthographic_height;
+    return c;
+}
+
+std::unique_ptr<fb::TexturePageT> texturePage(const TexturePage& page)
+{
+    auto p = std::make_unique<fb::TexturePageT>();
+    p->encoding = page.srgb ? fb::TextureEncoding::Rgba8Srgb : fb::TextureEncoding::Rgba8Unorm;
+    p->width = page.width;
+    p->height = page.height;
+    p->layers = page.layers;
+    p->levels = page.levels;
+    return p;
+}
+} // namespace
+
+fb::MetaT makeMeta(const CompileOptions& options, const SceneData& scene, const Bvh& bvh, const LightTables& lights,
+                   const TexturePages& textures, const EnvironmentImportance* importance)
+{
+    fb::MetaT meta;
+    const Bounds extent = bounds(scene.mesh);
+    meta.bounds_min = box(extent.min);
+    meta.bounds_max = box(extent.max);
+    for (const CameraView& view : scene.cameras)
+        meta.cameras.push_back(camera(view));
+    for (const TexturePage& page : textures.pages)
+        meta.texture_pages.push_back(texturePage(page));
+    if (importance != nullptr)
+    {
+        meta.environment = std::make_unique<fb::EnvironmentT>();
+        meta.environment->width = scene.environment->width;
+        meta.environment->height = scene.environment->height;
+        meta.environment->importance_width = importance->width;
+        meta.environment->importance_height = importance->height;
+        meta.environment->average_radiance = box(importance->average_radiance);
+    }
+    meta.statistics = statistics(scene, bvh, lights);
+    meta.provenance = std::make_unique<fb::ProvenanceT>();
+    meta.provenance->source = options.input.filename().string();
+    meta.provenance->tool_version = LUMICUT_VERSION;
+    meta.provenance->options = options.text;
+    meta.provenance->generator = scene.generator;
+    if (!scene.copyright.empty())
+        meta.provenance->copyright.push_back(scene.copyright);
+    meta.provenance->warnings = scene.warnings;
+    meta.material_names = scene.material_names;
+    const auto any = [&](uint32_t flag)
+    {
+        return std::any_of(bvh.triangles.begin(), bvh.triangles.end(),
+                           [flag](const gpu::BvhTriangle& t) { return (t.flags & flag) != 0; });
+    };
+    meta.has_alpha = any(gpu::kTriangleAlpha);
+    meta.has_thin = any(gpu::kTriangleThin);
+    return meta;
+}
+
+std::vector<uint8_t> encodeMeta(const fb::MetaT& meta)
+{
+    flatbuffers::FlatBufferBuilder builder;
+    fb::FinishMetaBuffer(builder, fb::Meta::Pack(builder, &meta));
+    return {builder.GetBufferPointer(), builder.GetBufferPointer() + builder.GetSize()};
+}

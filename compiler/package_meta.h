@@ -1,0 +1,15 @@
+// Fills the package's META chunk from what the compiler made.
+#pragma once
+#include "compiler/build_bvh.h"
+#include "compiler/build_lights.h"
+#include "compiler/compile.h"
+#include "compiler/environment.h"
+#include "compiler/texture_pages.h"
+
+/// @param importance null without environment
+lumicut::fb::MetaT makeMeta(const CompileOptions& options, const SceneData& scene, const Bvh& bvh,
+                            const LightTables& lights, const TexturePages& textures,
+                            const EnvironmentImportance* importance);
+
+/// The META chunk's bytes.
+std::vector<uint8_t> encodeMeta(const lumicut::fb::MetaT& meta);

@@ -1,0 +1,9 @@
+// What the compiler tells about a finished package: a summary for people, JSON for programs.
+#pragma once
+#include "compiler/compile.h"
+
+/// Several lines of plain text.
+std::string summaryText(const CompileReport& report, const CompileOptions& options);
+
+/// JSON, schema "lumicut-compile-report/1": fields are only ever added.
+std::string reportJson(const CompileReport& report, const CompileOptions& options);
