@@ -1,8 +1,9 @@
 // lumicut-play: the command line of the player.
+#include <CLI/CLI.hpp> // before our check(), whose name its options use too
+
 #include "runtime/capture.h"
 #include "runtime/headless.h"
-
-#include <CLI/CLI.hpp>
+#undef check
 
 namespace
 {

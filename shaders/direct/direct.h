@@ -1,7 +1,7 @@
 // Direct light at the shading points. Shared by runtime/stages/direct.cpp and shaders/direct/*.comp.
 #ifndef SHADERS_DIRECT_H
 #define SHADERS_DIRECT_H
-#include "primary/primary.h"
+#include "shaders/primary/primary.h"
 
 GPU_NAMESPACE_BEGIN
 

@@ -1,9 +1,9 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#include "direct/direct.h"
-#include "lib/lights.glsl"
-#include "lib/surface.glsl"
+#include "shaders/direct/direct.h"
+#include "shaders/lib/lights.glsl"
+#include "shaders/lib/surface.glsl"
 
 // Adds what BSDF-sampled rays find when they end on an emitter or in the sky. One thread per ray of the queue; at most
 // one ray a point, so the sum does not depend on thread order.

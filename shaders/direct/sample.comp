@@ -1,9 +1,9 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#include "direct/direct.h"
-#include "lib/lights.glsl"
-#include "lib/path.glsl"
+#include "shaders/direct/direct.h"
+#include "shaders/lib/lights.glsl"
+#include "shaders/lib/path.glsl"
 
 // Asks for direct light at every shading point twice: a shadow ray to a light chosen by power, and a ray chosen by the
 // BSDF that may end on an emitter (emitted.comp weighs it). One thread per point; queues hold one ray a point at most.

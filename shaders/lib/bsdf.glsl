@@ -3,8 +3,8 @@
 // Directions are local: z along the shading normal on the viewer's side, wo.z > 0. Functions only.
 #ifndef LIB_BSDF_GLSL
 #define LIB_BSDF_GLSL
-#include "lib/math.glsl"
-#include "lib/surface.glsl"
+#include "shaders/lib/math.glsl"
+#include "shaders/lib/surface.glsl"
 
 struct Bsdf
 {

@@ -1,11 +1,11 @@
 // Ray traversal of the 4-wide tree: the one closest-hit and the one any-hit routine. Functions only.
 #ifndef LIB_BVH_GLSL
 #define LIB_BVH_GLSL
-#include "lib/coverage.glsl"
-#include "lib/math.glsl"
-#include "lib/random.glsl"
-#include "lib/scene.glsl"
-#include "rays/rays.h"
+#include "shaders/lib/coverage.glsl"
+#include "shaders/lib/math.glsl"
+#include "shaders/lib/random.glsl"
+#include "shaders/lib/scene.glsl"
+#include "shaders/rays/rays.h"
 
 layout(constant_id = 0) const bool kSceneHasAlpha = true; // false: traversal carries no alpha test at all
 layout(constant_id = 1) const bool kSceneHasThin = true;  // false: nothing but opaque surfaces stops a shadow ray

@@ -1,8 +1,8 @@
 // Alpha coverage of a surface, as traversal needs it. Functions only.
 #ifndef LIB_COVERAGE_GLSL
 #define LIB_COVERAGE_GLSL
-#include "lib/scene.glsl"
-#include "lib/textures.glsl"
+#include "shaders/lib/scene.glsl"
+#include "shaders/lib/textures.glsl"
 
 /// Fraction of light that the surface stops: 1 opaque, mask 0 or 1, blend its alpha (glTF 2.0, 3.9.4).
 float surfaceCoverage(uint slot, vec2 barycentrics)

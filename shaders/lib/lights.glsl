@@ -1,10 +1,10 @@
 // Choosing and evaluating lights: punctual, emissive triangles, environment. Functions only.
 #ifndef LIB_LIGHTS_GLSL
 #define LIB_LIGHTS_GLSL
-#include "lib/math.glsl"
-#include "lib/random.glsl"
-#include "lib/scene.glsl"
-#include "lib/surface.glsl"
+#include "shaders/lib/math.glsl"
+#include "shaders/lib/random.glsl"
+#include "shaders/lib/scene.glsl"
+#include "shaders/lib/surface.glsl"
 
 struct LightSample
 {

@@ -1,10 +1,10 @@
 // Steps that every path shares: frames at a vertex, absorption, the choice of sampler dimensions. Functions only.
 #ifndef LIB_PATH_GLSL
 #define LIB_PATH_GLSL
-#include "lib/bsdf.glsl"
-#include "lib/random.glsl"
-#include "lib/surface.glsl"
-#include "primary/primary.h"
+#include "shaders/lib/bsdf.glsl"
+#include "shaders/lib/random.glsl"
+#include "shaders/lib/surface.glsl"
+#include "shaders/primary/primary.h"
 
 /// The sampler of a path at its vertex number `depth`.
 Sampler vertexSampler(uint path, uint depth, uint pixel_count, uint first_sample, uint seed)

@@ -1,9 +1,9 @@
 // From a hit to the surface and its material there. Functions only.
 #ifndef LIB_SURFACE_GLSL
 #define LIB_SURFACE_GLSL
-#include "lib/math.glsl"
-#include "lib/scene.glsl"
-#include "lib/textures.glsl"
+#include "shaders/lib/math.glsl"
+#include "shaders/lib/scene.glsl"
+#include "shaders/lib/textures.glsl"
 
 struct Surface
 {

@@ -1,7 +1,7 @@
 // Texture lookups through TextureRefs. Functions only.
 #ifndef LIB_TEXTURES_GLSL
 #define LIB_TEXTURES_GLSL
-#include "lib/scene.glsl"
+#include "shaders/lib/scene.glsl"
 
 // No device is asked for non-uniform descriptor indexing (software Vulkan lacks it): one constant index a case.
 #define TEXTURE_PAGE_CASE(index) case index: size = vec2(textureSize(texture_pages[index], 0)); break;

@@ -1,9 +1,9 @@
 // Shadow rays through thin-walled smooth transmission: straight on, tinted. Functions only.
 #ifndef LIB_THIN_GLSL
 #define LIB_THIN_GLSL
-#include "lib/bsdf.glsl"
-#include "lib/bvh.glsl"
-#include "lib/surface.glsl"
+#include "shaders/lib/bsdf.glsl"
+#include "shaders/lib/bvh.glsl"
+#include "shaders/lib/surface.glsl"
 
 const uint kMaxThinWalls = 16u; // along one shadow ray; more count as opaque
 

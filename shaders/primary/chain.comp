@@ -1,8 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#include "lib/lights.glsl"
-#include "lib/path.glsl"
+#include "shaders/lib/lights.glsl"
+#include "shaders/lib/path.glsl"
 
 // One link of every specular chain: a ray that met a smooth mirror or dielectric goes on, reflected or refracted by
 // chance; any other becomes its pixel's shading point, or ends in the sky. One thread per ray of the queue.

@@ -1,9 +1,9 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#include "lib/math.glsl"
-#include "lib/random.glsl"
-#include "primary/primary.h"
+#include "shaders/lib/math.glsl"
+#include "shaders/lib/random.glsl"
+#include "shaders/primary/primary.h"
 
 // Makes the camera rays, each through a random point of its pixel (box filter). One thread per ray.
 

@@ -2,7 +2,7 @@
 // Shared by runtime/stages/primary.cpp, direct.cpp, reference.cpp and shaders/**.
 #ifndef SHADERS_PRIMARY_H
 #define SHADERS_PRIMARY_H
-#include "rays/rays.h"
+#include "shaders/rays/rays.h"
 
 GPU_NAMESPACE_BEGIN
 

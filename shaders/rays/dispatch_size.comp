@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#include "rays/rays.h"
+#include "shaders/rays/rays.h"
 
 // Turns a queue's count into the group count of its indirect dispatches. One thread.
 

@@ -1,8 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#include "lib/bvh.glsl"
-#include "lib/thin.glsl"
+#include "shaders/lib/bvh.glsl"
+#include "shaders/lib/thin.glsl"
 
 // Adds each shadow ray's radiance to its path unless a surface is in between. One thread per ray; at most one ray a
 // path and dispatch, so the sum does not depend on thread order.

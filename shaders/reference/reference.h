@@ -1,7 +1,7 @@
 // The reference path tracer's state. Shared by runtime/stages/reference.cpp and shaders/reference/*.comp.
 #ifndef SHADERS_REFERENCE_H
 #define SHADERS_REFERENCE_H
-#include "primary/primary.h"
+#include "shaders/primary/primary.h"
 
 GPU_NAMESPACE_BEGIN
 

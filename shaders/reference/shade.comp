@@ -1,9 +1,9 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#include "lib/lights.glsl"
-#include "lib/path.glsl"
-#include "reference/reference.h"
+#include "shaders/lib/lights.glsl"
+#include "shaders/lib/path.glsl"
+#include "shaders/reference/reference.h"
 
 // One vertex of every path: adds what it emits, sends a shadow ray to one light, chooses the next direction.
 // One thread per ray of the queue. Unbiased: next-event estimation and BSDF sampling combined by multiple importance

@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#include "resolve/resolve.h"
+#include "shaders/resolve/resolve.h"
 
 // Adds the samples of one pass to each pixel's sum, with Kahan's compensation so that any number of samples can be
 // added in 32 bits. One thread per pixel.

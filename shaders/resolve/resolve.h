@@ -1,7 +1,7 @@
 // From accumulated radiance to display pixels. Shared by runtime/stages/resolve.cpp and shaders/resolve/*.comp.
 #ifndef SHADERS_RESOLVE_H
 #define SHADERS_RESOLVE_H
-#include "rays/rays.h"
+#include "shaders/rays/rays.h"
 
 GPU_NAMESPACE_BEGIN
 

@@ -1,8 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#include "lib/tonemap.glsl"
-#include "resolve/resolve.h"
+#include "shaders/lib/tonemap.glsl"
+#include "shaders/resolve/resolve.h"
 
 // Exposure and display transform: radiance sums to 8-bit sRGB pixels. One thread per pixel.
 
