@@ -1,65 +1,78 @@
+// The builder's innermost loop: called some ten million times for a large scene, so everything stays in registers.
 #include "compiler/bvh_tree.h"
-
-#include <cmath>
 
 namespace
 {
-float& component(gpu::vec3& v, uint32_t axis)
+template <uint32_t kAxis>
+float at(const gpu::vec3& v)
 {
-    return axis == 0 ? v.x : axis == 1 ? v.y : v.z;
+    return kAxis % 3 == 0 ? v.x : kAxis % 3 == 1 ? v.y : v.z;
 }
 
-float component(const gpu::vec3& v, uint32_t axis)
+/// Bounds across the plane, in the two axes other than kAxis, of the triangle's part on one side of it.
+struct Extent
 {
-    return axis == 0 ? v.x : axis == 1 ? v.y : v.z;
-}
+    float low_u = Box{}.low.x, low_v = Box{}.low.x;
+    float high_u = Box{}.high.x, high_v = Box{}.high.x;
 
-/// Where the edge a-b meets the plane, as a box that surely contains the exact point.
-Box crossing(const gpu::vec3& a, const gpu::vec3& b, uint32_t dimension, float position)
-{
-    const double t =
-        (double(position) - component(a, dimension)) / (double(component(b, dimension)) - component(a, dimension));
-    Box box;
-    for (uint32_t axis = 0; axis < 3; ++axis)
+    void grow(float u, float v)
     {
-        const double exact = component(a, axis) + t * (double(component(b, axis)) - component(a, axis));
-        const float infinity = std::numeric_limits<float>::infinity();
-        component(box.low, axis) = std::nextafter(float(exact), -infinity);
-        component(box.high, axis) = std::nextafter(float(exact), infinity);
+        low_u = std::min(low_u, u);
+        low_v = std::min(low_v, v);
+        high_u = std::max(high_u, u);
+        high_v = std::max(high_v, v);
     }
-    return box;
+};
+
+/// The box of one side: from..to along kAxis, `part` across it, never more than `box`.
+template <uint32_t kAxis>
+Box sideBox(const Box& box, const Extent& part, float from, float to)
+{
+    const auto place = [](float along, float u, float v) {
+        return kAxis == 0 ? gpu::vec3{along, u, v} : kAxis == 1 ? gpu::vec3{v, along, u} : gpu::vec3{u, v, along};
+    };
+    return {max(box.low, place(from, part.low_u, part.low_v)), min(box.high, place(to, part.high_u, part.high_v))};
 }
 
-Box intersect(const Box& a, const Box& b)
+template <uint32_t kAxis>
+void split(const std::array<gpu::vec3, 3>& corners, const Box& box, float position, Box& left, Box& right)
 {
-    return {max(a.low, b.low), min(a.high, b.high)};
+    Extent below;
+    Extent above;
+    const auto edge = [&](const gpu::vec3& a, const gpu::vec3& b)
+    {
+        const float at_a = at<kAxis>(a);
+        const float at_b = at<kAxis>(b);
+        const float u = at<kAxis + 1>(a);
+        const float v = at<kAxis + 2>(a);
+        if (at_a <= position)
+            below.grow(u, v);
+        if (at_a >= position)
+            above.grow(u, v);
+        if ((at_a < position) == (at_b < position) || at_a == position || at_b == position)
+            return;
+        // Double precision: the crossing is off by its own rounding only, which the padding of the leaves exceeds.
+        const double t = (double(position) - at_a) / (double(at_b) - at_a);
+        const auto cross_u = float(u + t * (double(at<kAxis + 1>(b)) - u));
+        const auto cross_v = float(v + t * (double(at<kAxis + 2>(b)) - v));
+        below.grow(cross_u, cross_v);
+        above.grow(cross_u, cross_v);
+    };
+    edge(corners[0], corners[1]);
+    edge(corners[1], corners[2]);
+    edge(corners[2], corners[0]);
+    left = sideBox<kAxis>(box, below, at<kAxis>(box.low), position);
+    right = sideBox<kAxis>(box, above, position, at<kAxis>(box.high));
 }
 } // namespace
 
-void splitTriangleBox(std::span<const gpu::vec3, 3> v, const Box& box, uint32_t dimension, float position, Box& left,
+void splitTriangleBox(const std::array<gpu::vec3, 3>& corners, const Box& box, uint32_t axis, float position, Box& left,
                       Box& right)
 {
-    Box below;
-    Box above;
-    for (size_t i = 0; i < 3; ++i)
-    {
-        const gpu::vec3& a = v[i];
-        const gpu::vec3& b = v[(i + 1) % 3];
-        const float at_a = component(a, dimension);
-        const float at_b = component(b, dimension);
-        if (at_a <= position)
-            below.grow(a);
-        if (at_a >= position)
-            above.grow(a);
-        if ((at_a < position && position < at_b) || (at_b < position && position < at_a))
-        {
-            const Box point = crossing(a, b, dimension, position);
-            below.grow(point);
-            above.grow(point);
-        }
-    }
-    component(below.high, dimension) = std::min(component(below.high, dimension), position);
-    component(above.low, dimension) = std::max(component(above.low, dimension), position);
-    left = intersect(below, box);
-    right = intersect(above, box);
+    if (axis == 0)
+        split<0>(corners, box, position, left, right);
+    else if (axis == 1)
+        split<1>(corners, box, position, left, right);
+    else
+        split<2>(corners, box, position, left, right);
 }

@@ -45,9 +45,9 @@ struct BinaryNode
     bool isLeaf() const { return triangle_count > 0; }
 };
 
-/// Splits `box` (of all or part of triangle `v`) at `position` along axis `dimension` and shrinks both halves to the
-/// parts of the triangle inside them, rounded outwards.
-void splitTriangleBox(std::span<const gpu::vec3, 3> v, const Box& box, uint32_t dimension, float position, Box& left,
+/// Splits `box` (about all or a part of the triangle) at `position` along `axis` and shrinks both halves to the parts
+/// of the triangle inside them, rounded to nearest.
+void splitTriangleBox(const std::array<gpu::vec3, 3>& corners, const Box& box, uint32_t axis, float position, Box& left,
                       Box& right);
 
 /// Turns the binary tree into 4-wide nodes so that the surface-area heuristic is least (Wald et al. 2008; the dynamic

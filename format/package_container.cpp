@@ -25,7 +25,7 @@ Error invalid(fmt::format_string<Args...> format, Args&&... args)
 
 bool startsWith(std::span<const std::byte> file, std::string_view prefix)
 {
-    return file.size() >= prefix.size() && std::memcmp(file.data(), prefix.data(), prefix.size()) == 0;
+    return std::string_view(reinterpret_cast<const char*>(file.data()), file.size()).starts_with(prefix);
 }
 
 /// What a file with a wrong magic most likely is.
@@ -46,8 +46,8 @@ Error describeForeign(std::span<const std::byte> file)
 
 Result<Header> readHeader(std::span<const std::byte> file)
 {
-    const size_t known = std::min(file.size(), kMagic.size());
-    if (std::memcmp(file.data(), kMagic.data(), known) != 0)
+    const std::string_view magic(reinterpret_cast<const char*>(kMagic.data()), kMagic.size());
+    if (!startsWith(file, magic.substr(0, file.size())))
         return describeForeign(file);
     if (file.size() < sizeof(Header))
         return invalid("the package is truncated: {} bytes are left, its header alone takes {}; copy it again",
@@ -172,6 +172,9 @@ Status verifyPlacement(std::span<const std::byte> file, const Header& header, st
     {
         if (ranges[i].begin < ranges[i - 1].end)
             return invalid("{} overlaps {}", ranges[i].name, ranges[i - 1].name);
+    }
+    for (size_t i = 1; i < ranges.size(); ++i)
+    {
         const auto gap = file.subspan(ranges[i - 1].end, ranges[i].begin - ranges[i - 1].end);
         if (std::any_of(gap.begin(), gap.end(), [](std::byte b) { return b != std::byte{0}; }))
             return invalid("the padding between {} and {} is not zero", ranges[i - 1].name, ranges[i].name);

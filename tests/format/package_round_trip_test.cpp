@@ -1,0 +1,108 @@
+// What is written is what is read, whatever the options; equal content gives equal bytes.
+#include "tests/format/sample_package.h"
+#include "tests/format/walk_package.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+
+namespace
+{
+template <typename T>
+void expectSame(std::span<const T> read, const std::vector<T>& written)
+{
+    ASSERT_EQ(read.size(), written.size());
+    EXPECT_EQ(std::memcmp(read.data(), written.data(), read.size_bytes()), 0);
+}
+
+void expectSample(const package::Package& package, const SamplePackage& sample)
+{
+    expectSame(package.bvhNodes(), sample.bvh_nodes);
+    expectSame(package.bvhTriangles(), sample.bvh_triangles);
+    expectSame(package.triangles(), sample.triangles);
+    expectSame(package.vertexAttributes(), sample.vertex_attributes);
+    expectSame(package.materials(), sample.materials);
+    expectSame(package.textureRefs(), sample.texture_refs);
+    expectSame(package.lights(), sample.lights);
+    expectSame(package.lightAliases(), sample.light_aliases);
+    expectSame(package.environmentTexels(), sample.environment_texels);
+    expectSame(package.environmentMap(), sample.environment_map);
+    expectSame(package.causticTargets(), sample.caustic_targets);
+    expectSame(package.texturePage(0), sample.texture_pages[0]);
+    EXPECT_EQ(package.meta().cameras()->Get(0)->name()->str(), "front");
+    EXPECT_EQ(package.meta().provenance()->source()->str(), "sample.gltf");
+}
+} // namespace
+
+TEST(PackageRoundTrip, EveryChunkComesBackAsWritten)
+{
+    const SamplePackage sample;
+    const std::vector<std::byte> bytes = sample.bytes();
+    const auto package = package::Package::openBytes(bytes);
+    ASSERT_TRUE(package) << package.error().message;
+    expectSample(*package, sample);
+    EXPECT_EQ(package->fileBytes(), bytes.size());
+    EXPECT_EQ(package->chunks().size(), 13u);
+    EXPECT_TRUE(std::isfinite(walkPackage(*package)));
+}
+
+TEST(PackageRoundTrip, CompressedChunksComeBackAsWritten)
+{
+    SamplePackage sample;
+    sample.texture_pages[0].resize(size_t(256) * 256 * 4);
+    for (size_t i = 0; i < sample.texture_pages[0].size(); ++i)
+        sample.texture_pages[0][i] = std::byte(i * i >> 12 & 15); // shrinks well
+    auto& page = *sample.meta.texture_pages[0];
+    page.width = page.height = 256;
+    page.layers = 1;
+    page.levels = 1;
+    sample.texture_refs[1].layer = 0;
+    const std::vector<std::byte> plain = sample.bytes();
+    const std::vector<std::byte> packed = sample.bytes({.zstd_level = 5});
+    EXPECT_LT(packed.size(), plain.size() / 4);
+    const auto package = package::Package::openBytes(packed);
+    ASSERT_TRUE(package) << package.error().message;
+    expectSample(*package, sample);
+}
+
+TEST(PackageRoundTrip, OptionalChunksMayBeAbsent)
+{
+    SamplePackage sample;
+    sample.lights.clear();
+    sample.light_aliases.clear();
+    sample.environment_map.clear();
+    sample.environment_texels.clear();
+    sample.meta.environment.reset();
+    sample.caustic_targets.clear();
+    sample.triangles[1].light = gpu::kNone;
+    sample.texture_refs.clear();
+    sample.texture_pages.clear();
+    sample.meta.texture_pages.clear();
+    sample.materials[1].emissive_texture = gpu::kNone;
+    sample.materials[2].base_color_texture = gpu::kNone;
+    const std::vector<std::byte> bytes = sample.bytes();
+    const auto package = package::Package::openBytes(bytes);
+    ASSERT_TRUE(package) << package.error().message;
+    EXPECT_TRUE(package->lights().empty());
+    EXPECT_TRUE(package->textureRefs().empty());
+    EXPECT_EQ(package->chunks().size(), 6u);
+}
+
+TEST(PackageRoundTrip, EqualContentGivesEqualBytes)
+{
+    EXPECT_EQ(SamplePackage().bytes(), SamplePackage().bytes());
+    EXPECT_EQ(SamplePackage().bytes({.zstd_level = 3}), SamplePackage().bytes({.zstd_level = 3}));
+}
+
+TEST(PackageRoundTrip, UncompressedBulkLiesOnPageBoundaries)
+{
+    const std::vector<std::byte> bytes = SamplePackage().bytes();
+    const auto package = package::Package::openBytes(bytes);
+    ASSERT_TRUE(package);
+    for (const package::ChunkEntry& entry : package->chunks())
+    {
+        const uint64_t alignment = entry.id == package::kMetaChunk ? package::kSmallAlignment : package::kBulkAlignment;
+        EXPECT_EQ(entry.offset % alignment, 0u) << package::chunkName(entry.id);
+    }
+}

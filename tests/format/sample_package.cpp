@@ -1,0 +1,180 @@
+#include "tests/format/sample_package.h"
+
+#include "format/check.h"
+
+#include <unistd.h>
+
+#include <fstream>
+#include <iterator>
+#include <limits>
+
+namespace
+{
+constexpr float kEmptyLow = std::numeric_limits<float>::max();
+constexpr float kEmptyHigh = std::numeric_limits<float>::lowest();
+
+uint32_t leaf(uint32_t first, uint32_t count)
+{
+    return gpu::kLeafBit | (count - 1) << gpu::kLeafCountShift | first;
+}
+
+/// All present children share the box 0..1; absent ones come last.
+gpu::BvhNode node(gpu::uvec4 child)
+{
+    const auto low = [](uint32_t c) { return c == gpu::kNone ? kEmptyLow : 0.0f; };
+    const auto high = [](uint32_t c) { return c == gpu::kNone ? kEmptyHigh : 1.0f; };
+    const gpu::vec4 lows{low(child.x), low(child.y), low(child.z), low(child.w)};
+    const gpu::vec4 highs{high(child.x), high(child.y), high(child.z), high(child.w)};
+    return {lows, highs, lows, highs, lows, highs, child};
+}
+
+gpu::Material material(uint32_t flags)
+{
+    return {.base_color = {0.5f, 0.5f, 0.5f},
+            .alpha = 1,
+            .emission = {},
+            .alpha_cutoff = 0.5f,
+            .metallic = 0,
+            .roughness = 1,
+            .normal_scale = 1,
+            .transmission = 0,
+            .ior = 1.5f,
+            .specular = 1,
+            .specular_color = {1, 1, 1},
+            .absorption = {},
+            .flags = flags,
+            .base_color_texture = gpu::kNone,
+            .metallic_roughness_texture = gpu::kNone,
+            .normal_texture = gpu::kNone,
+            .emissive_texture = gpu::kNone,
+            .transmission_texture = gpu::kNone,
+            .specular_texture = gpu::kNone,
+            .specular_color_texture = gpu::kNone};
+}
+
+gpu::Light light(uint32_t kind, float pmf)
+{
+    return {.p0 = {0, 1, 0},
+            .kind = kind,
+            .p1 = {0, -1, 0},
+            .triangle = gpu::kNone,
+            .p2 = {},
+            .pmf = pmf,
+            .emission = {1, 1, 1},
+            .material = gpu::kNone};
+}
+
+void fillMeta(lumicut::fb::MetaT& meta)
+{
+    using namespace lumicut::fb;
+    meta.bounds_min = std::make_unique<Vec3>(0.0f, 0.0f, 0.0f);
+    meta.bounds_max = std::make_unique<Vec3>(1.0f, 1.0f, 1.0f);
+    auto camera = std::make_unique<CameraT>();
+    camera->name = "front";
+    camera->position = std::make_unique<Vec3>(0.5f, 0.5f, 3.0f);
+    camera->forward = std::make_unique<Vec3>(0.0f, 0.0f, -1.0f);
+    camera->up = std::make_unique<Vec3>(0.0f, 1.0f, 0.0f);
+    camera->vertical_fov = 0.8f;
+    meta.cameras.push_back(std::move(camera));
+    auto page = std::make_unique<TexturePageT>();
+    page->width = page->height = 4;
+    page->layers = 2;
+    page->levels = 3;
+    meta.texture_pages.push_back(std::move(page));
+    meta.environment = std::make_unique<EnvironmentT>();
+    meta.environment->width = 4;
+    meta.environment->height = 2;
+    meta.environment->importance_width = 2;
+    meta.environment->importance_height = 1;
+    meta.environment->average_radiance = std::make_unique<Vec3>(1.0f, 1.0f, 1.0f);
+    meta.statistics = std::make_unique<StatisticsT>();
+    meta.statistics->triangles = 5;
+    meta.provenance = std::make_unique<ProvenanceT>();
+    meta.provenance->source = "sample.gltf";
+    meta.provenance->copyright = {"CC0"};
+    meta.material_names = {"plain", "lamp", "leaf", "glass"};
+    meta.has_alpha = true;
+    meta.has_thin = true;
+}
+} // namespace
+
+SamplePackage::SamplePackage()
+{
+    fillMeta(meta);
+    bvh_nodes = {node({leaf(0, 2), 1, gpu::kNone, gpu::kNone}), node({leaf(2, 1), leaf(3, 1), leaf(4, 1), gpu::kNone})};
+    materials = {material(0), material(0), material(gpu::kMaterialAlphaMask), material(gpu::kMaterialThin)};
+    materials[1].emission = {2, 2, 2};
+    materials[1].emissive_texture = 0;
+    materials[2].base_color_texture = 1;
+    materials[3].transmission = 1;
+    const std::array<uint32_t, 5> material_of{0, 1, 2, 3, 0};
+    const std::array<uint32_t, 5> flags_of{0, 0, gpu::kTriangleAlpha, gpu::kTriangleThin, 0};
+    for (uint32_t i = 0; i < 5; ++i)
+    {
+        const float z = float(i) / 5;
+        bvh_triangles.push_back({{0, 0, z}, i, {1, 0, z}, material_of[i], {0, 1, z}, flags_of[i]});
+        triangles.push_back({{3 * i, 3 * i + 1, 3 * i + 2}, i == 1 ? 1 : gpu::kNone});
+        vertex_attributes.insert(vertex_attributes.end(), 3, {1, 2, {0, 0}, {1, 1}, {0x3c003c00, 0x3c003c00}});
+    }
+    texture_refs = {{0, 0, 0, {1, 0, 0}, {0, 1, 0}}, {0, 1, gpu::kSampleUv1, {1, 0, 0}, {0, 1, 0}}};
+    texture_pages = {std::vector<std::byte>((16 + 4 + 1) * 2 * 4, std::byte{0x55})};
+    lights = {light(gpu::kLightPoint, 0.25f), light(gpu::kLightTriangle, 0.25f), light(gpu::kLightEnvironment, 0.5f)};
+    lights[1].triangle = 1;
+    lights[1].material = 1;
+    light_aliases = {{0.75f, 2}, {0.75f, 2}, {1, 2}};
+    environment_map.assign(8, {1, 1, 1, 1});
+    environment_texels = {{1, 0, 0.5f}, {1, 1, 0.5f}};
+    caustic_targets = {{{0.5f, 0.5f, 0.6f}, 0.7f}};
+}
+
+Result<std::vector<package::WrittenChunk>> SamplePackage::write(const std::filesystem::path& path,
+                                                                const package::WriteOptions& options) const
+{
+    flatbuffers::FlatBufferBuilder builder;
+    lumicut::fb::FinishMetaBuffer(builder, lumicut::fb::Meta::Pack(builder, &meta));
+    std::vector<package::ChunkSource> chunks{
+        {package::kMetaChunk, 0, std::as_bytes(std::span(builder.GetBufferPointer(), builder.GetSize()))},
+        {package::kBvhNodesChunk, 0, std::as_bytes(std::span(bvh_nodes))},
+        {package::kBvhTrianglesChunk, 0, std::as_bytes(std::span(bvh_triangles))},
+        {package::kTrianglesChunk, 0, std::as_bytes(std::span(triangles))},
+        {package::kVertexAttributesChunk, 0, std::as_bytes(std::span(vertex_attributes))},
+        {package::kMaterialsChunk, 0, std::as_bytes(std::span(materials))},
+        {package::kTextureRefsChunk, 0, std::as_bytes(std::span(texture_refs))},
+        {package::kLightsChunk, 0, std::as_bytes(std::span(lights))},
+        {package::kLightAliasesChunk, 0, std::as_bytes(std::span(light_aliases))},
+        {package::kEnvironmentChunk, 0, std::as_bytes(std::span(environment_map))},
+        {package::kEnvironmentTexelsChunk, 0, std::as_bytes(std::span(environment_texels))},
+        {package::kCausticTargetsChunk, 0, std::as_bytes(std::span(caustic_targets))}};
+    for (uint32_t i = 0; i < texture_pages.size(); ++i)
+        chunks.push_back({package::kTexturePageChunk, i, texture_pages[i]});
+    return package::write(path, chunks, options);
+}
+
+std::vector<std::byte> SamplePackage::bytes(const package::WriteOptions& options) const
+{
+    const TemporaryFolder folder;
+    const auto written = write(folder.path() / "sample.lumi", options);
+    check(written, "{}", written.error().message);
+    return readFile(folder.path() / "sample.lumi");
+}
+
+std::vector<std::byte> readFile(const std::filesystem::path& path)
+{
+    std::ifstream file(path, std::ios::binary);
+    const std::vector<char> chars{std::istreambuf_iterator<char>(file), {}};
+    const auto bytes = std::as_bytes(std::span(chars));
+    return {bytes.begin(), bytes.end()};
+}
+
+TemporaryFolder::TemporaryFolder()
+{
+    std::string pattern = std::filesystem::temp_directory_path() / "lumicut-test-XXXXXX";
+    check(mkdtemp(pattern.data()), "{}", pattern);
+    path_ = pattern;
+}
+
+TemporaryFolder::~TemporaryFolder()
+{
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+}

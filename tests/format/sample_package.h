@@ -1,0 +1,54 @@
+// A small package that uses every chunk: the ground on which readers are tested.
+#pragma once
+#include "format/package_read.h"
+#include "format/package_write.h"
+
+#include <cstddef>
+#include <filesystem>
+#include <vector>
+
+/// The content as plain vectors, free to be spoiled before it is written.
+struct SamplePackage
+{
+    lumicut::fb::MetaT meta;
+    std::vector<gpu::BvhNode> bvh_nodes;
+    std::vector<gpu::BvhTriangle> bvh_triangles;
+    std::vector<gpu::Triangle> triangles;
+    std::vector<gpu::VertexAttributes> vertex_attributes;
+    std::vector<gpu::Material> materials;
+    std::vector<gpu::TextureRef> texture_refs;
+    std::vector<gpu::Light> lights;
+    std::vector<gpu::AliasEntry> light_aliases;
+    std::vector<gpu::EnvironmentTexel> environment_texels;
+    std::vector<gpu::vec4> environment_map;
+    std::vector<gpu::CausticTarget> caustic_targets;
+    std::vector<std::vector<std::byte>> texture_pages;
+
+    /// Five triangles under two nodes, four materials, two textures, a point, a triangle and an environment light.
+    SamplePackage();
+
+    /// Writes it as the compiler would.
+    Result<std::vector<package::WrittenChunk>> write(const std::filesystem::path& path,
+                                                     const package::WriteOptions& options = {}) const;
+
+    /// The file's bytes.
+    std::vector<std::byte> bytes(const package::WriteOptions& options = {}) const;
+};
+
+/// The whole file; empty where it cannot be read.
+std::vector<std::byte> readFile(const std::filesystem::path& path);
+
+/// A folder of this process's own that goes away with the object.
+class TemporaryFolder
+{
+public:
+    TemporaryFolder();
+    TemporaryFolder(const TemporaryFolder&) = delete;
+    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+    ~TemporaryFolder();
+
+    const std::filesystem::path& path() const { return path_; }
+
+private:
+    std::filesystem::path path_;
+};

@@ -1,0 +1,122 @@
+#include "tests/format/walk_package.h"
+
+#include "format/check.h"
+
+#include <algorithm>
+#include <array>
+
+namespace
+{
+template <typename T>
+const T& at(std::span<const T> span, uint32_t index)
+{
+    check(index < span.size(), "{} of {}", index, span.size());
+    return span[index];
+}
+
+double texel(const package::Package& package, uint32_t texture)
+{
+    if (texture == gpu::kNone)
+        return 0;
+    const gpu::TextureRef& ref = at(package.textureRefs(), texture);
+    const lumicut::fb::TexturePage& page = *package.meta().texture_pages()->Get(ref.page);
+    double sum = ref.u_row.x + ref.v_row.y;
+    uint64_t offset = 0;
+    for (uint32_t level = 0; level < page.levels(); ++level)
+    {
+        const uint64_t layer_bytes = 4ull * std::max(1u, page.width() >> level) * std::max(1u, page.height() >> level);
+        const uint64_t last = offset + layer_bytes * (ref.layer + 1) - 1; // its layer's last byte of this level
+        check(last < package.texturePage(ref.page).size(), "byte {}", last);
+        sum += double(package.texturePage(ref.page)[last]);
+        offset += layer_bytes * page.layers();
+    }
+    return sum;
+}
+
+double lightEmission(const package::Package& package, const gpu::Light& light)
+{
+    double sum = light.emission.x / light.pmf;
+    if (light.kind == gpu::kLightEnvironment)
+        return sum + package.environmentMap().back().x + package.environmentTexels().back().probability;
+    if (light.triangle != gpu::kNone)
+        sum += at(package.vertexAttributes(), at(package.triangles(), light.triangle).vertices.x).uv0.x;
+    if (light.material != gpu::kNone)
+        sum += texel(package, at(package.materials(), light.material).emissive_texture);
+    return sum;
+}
+
+double hit(const package::Package& package, uint32_t bvh_triangle)
+{
+    const gpu::BvhTriangle& t = at(package.bvhTriangles(), bvh_triangle);
+    const gpu::Triangle& surface = at(package.triangles(), t.triangle);
+    const gpu::Material& m = at(package.materials(), t.material);
+    double sum = t.v0.x + t.v1.y + t.v2.z;
+    for (const uint32_t v : {surface.vertices.x, surface.vertices.y, surface.vertices.z})
+        sum += at(package.vertexAttributes(), v).uv0.x;
+    for (const uint32_t texture :
+         {m.base_color_texture, m.metallic_roughness_texture, m.normal_texture, m.emissive_texture,
+          m.transmission_texture, m.specular_texture, m.specular_color_texture})
+        sum += texel(package, texture);
+    if (surface.light != gpu::kNone)
+        sum += at(package.lights(), surface.light).pmf;
+    return sum;
+}
+
+/// Depth-first with the fixed stack that shaders have; children in order or in reverse.
+double traverse(const package::Package& package, bool reverse)
+{
+    std::array<uint32_t, gpu::kTraversalStackSize> stack;
+    uint32_t height = 0;
+    double sum = 0;
+    for (uint32_t current = 0; current != gpu::kNone;)
+    {
+        uint32_t next = gpu::kNone;
+        if ((current & gpu::kLeafBit) != 0)
+        {
+            const uint32_t count = (current >> gpu::kLeafCountShift & gpu::kLeafCountMask) + 1;
+            for (uint32_t i = 0; i < count; ++i)
+                sum += hit(package, (current & gpu::kLeafFirstMask) + i);
+        }
+        else
+        {
+            const gpu::uvec4 c = at(package.bvhNodes(), current).child;
+            std::array<uint32_t, 4> children{c.x, c.y, c.z, c.w};
+            if (reverse)
+                std::reverse(children.begin(), children.end());
+            for (const uint32_t child : children)
+            {
+                if (child == gpu::kNone)
+                    continue;
+                if (next != gpu::kNone)
+                {
+                    check(height < stack.size(), "stack overflow");
+                    stack[height++] = next;
+                }
+                next = child;
+            }
+        }
+        if (next == gpu::kNone && height > 0)
+            next = stack[--height];
+        current = next;
+    }
+    return sum;
+}
+} // namespace
+
+double walkPackage(const package::Package& package)
+{
+    double sum = traverse(package, false) + traverse(package, true);
+    for (const gpu::AliasEntry& entry : package.lightAliases())
+        sum += lightEmission(package, at(package.lights(), entry.alias));
+    for (const gpu::Light& light : package.lights())
+        sum += lightEmission(package, light);
+    for (const gpu::EnvironmentTexel& entry : package.environmentTexels())
+        sum += at(package.environmentTexels(), entry.alias).threshold;
+    for (const gpu::CausticTarget& target : package.causticTargets())
+        sum += target.radius;
+    for (const lumicut::fb::Camera* camera : *package.meta().cameras())
+        sum += camera->position()->x() + (camera->name() ? double(camera->name()->size()) : 0);
+    for (const flatbuffers::String* name : *package.meta().material_names())
+        sum += name->size();
+    return sum + double(package.meta().statistics()->triangles());
+}
