@@ -59,7 +59,7 @@ uint32_t duplicateVertex(MeshPrimitive& mesh, uint32_t v)
 /// @param faces [triangle_count] the face of each triangle; invalid where the triangle is degenerate
 Surface weldedSurface(const MeshPrimitive& mesh, std::vector<Surface::FaceHandle>& faces)
 {
-    omerr().disable(); // it prints a line for every non-manifold edge
+    [[maybe_unused]] static const bool quiet = (omerr().disable(), true); // it prints a line for every non-manifold edge
     Surface surface;
     std::unordered_map<PositionKey, Surface::VertexHandle, KeyHash> welded;
     std::vector<Surface::VertexHandle> vertices(mesh.positions.size());
