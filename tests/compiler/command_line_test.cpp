@@ -1,6 +1,7 @@
 #include "compiler/camera_views.h"
 #include "tests/compiler/gltf_builder.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <sys/wait.h>
@@ -19,7 +20,7 @@ struct ProgramRun
 ProgramRun run(const std::string& arguments)
 {
     ProgramRun result;
-    FILE* pipe = popen(("'" LUMICUT_COMPILE_PROGRAM "' " + arguments + " 2>&1").c_str(), "r");
+    FILE* pipe = popen(fmt::format("'{}' {} 2>&1", LUMICUT_COMPILE_PROGRAM, arguments).c_str(), "r");
     std::array<char, 4096> buffer;
     for (size_t n; (n = fread(buffer.data(), 1, buffer.size(), pipe)) > 0;)
         result.output.append(buffer.data(), n);
@@ -37,15 +38,15 @@ protected:
         builder.triangle();
         builder.writeGltf(folder_ / "scene.gltf");
     }
-    std::string scene() const { return "'" + (folder_ / "scene.gltf").string() + "'"; }
+    std::string path(const char* name) const { return fmt::format("'{}'", (folder_ / name).string()); }
+    std::string scene() const { return path("scene.gltf"); }
 
     TemporaryFolder folder_;
 };
 
 TEST_F(CommandLine, CompilesBesideTheInputByDefault)
 {
-    const ProgramRun r = run(scene() + " --sun 0,-1,0,100 --view 'a=0,0,3,0,0,0,40' --compress zstd:1 --report '" +
-                      (folder_ / "r.json").string() + "'");
+    const ProgramRun r = run(scene() + " --sun 0,-1,0,100 --view a=0,0,3,0,0,0,40 --compress zstd:1 --report " + path("r.json"));
     EXPECT_EQ(r.code, 0) << r.output;
     EXPECT_TRUE(std::filesystem::exists(folder_ / "scene.lumi"));
     EXPECT_TRUE(std::filesystem::exists(folder_ / "r.json"));
@@ -80,9 +81,8 @@ TEST_F(CommandLine, MistakesInArgumentsAreUsageErrors)
 TEST_F(CommandLine, FilesThatCannotBeReadOrWrittenAreInputOutputErrors)
 {
     std::filesystem::create_directory(folder_ / "folder.gltf");
-    const std::string folder = folder_.path().string();
-    for (const std::string& arguments : {folder + "/gone.gltf", folder + "/folder.gltf", scene() + " -o " + folder + "/none/out.lumi",
-                                         scene() + " --env " + folder + "/gone.exr"})
+    for (const std::string& arguments : {path("gone.gltf"), path("folder.gltf"), scene() + " -o " + path("none/out.lumi"),
+                                         scene() + " --env " + path("gone.exr")})
     {
         const ProgramRun r = run(arguments);
         EXPECT_EQ(r.code, 2) << arguments << "\n" << r.output;
@@ -100,7 +100,7 @@ TEST_F(CommandLine, AnEmptyFileAndAGlbCutInHalfAreInvalid)
     writeBytes(folder_ / "empty.glb", "", 0);
     for (const char* name : {"half.glb", "empty.glb"})
     {
-        const ProgramRun r = run("'" + (folder_ / name).string() + "' -q");
+        const ProgramRun r = run(path(name) + " -q");
         EXPECT_EQ(r.code, 3) << name;
         EXPECT_EQ(std::count(r.output.begin(), r.output.end(), '\n'), 1) << r.output;
     }
