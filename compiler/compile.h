@@ -15,13 +15,13 @@ struct CompileOptions
 {
     std::filesystem::path input;  // .gltf or .glb
     std::filesystem::path output; // .lumi
-    std::optional<std::filesystem::path> environment;
-    std::optional<PunctualLight> sun;
-    std::vector<CameraView> views;  // come before the file's own cameras
+    std::optional<std::filesystem::path> environment{};
+    std::optional<PunctualLight> sun{};
+    std::vector<CameraView> views{}; // come before the file's own cameras
     bool default_light = true;      // give a scene without any light a sky and a sun
     int zstd_level = 0;             // 0: no compression
-    std::vector<std::string> text;  // the options as given, for the package's provenance
-    std::function<void(double seconds, const std::string& line)> progress; // after each stage; may be empty
+    std::vector<std::string> text{}; // the options as given, for the package's provenance
+    std::function<void(double seconds, const std::string& line)> progress{};// after each stage; may be empty
 };
 
 struct StageTime

@@ -59,7 +59,7 @@ uint32_t duplicateVertex(MeshPrimitive& mesh, uint32_t v)
 /// @param faces [triangle_count] the face of each triangle; invalid where the triangle is degenerate
 Surface weldedSurface(const MeshPrimitive& mesh, std::vector<Surface::FaceHandle>& faces)
 {
-    omerr().disable(); // it prints a line for every non-manifold edge
+    [[maybe_unused]] static const bool quiet = (omerr().disable(), true); // it prints a line for every non-manifold edge
     Surface surface;
     std::unordered_map<PositionKey, Surface::VertexHandle, KeyHash> welded;
     std::vector<Surface::VertexHandle> vertices(mesh.positions.size());
@@ -82,8 +82,10 @@ Surface weldedSurface(const MeshPrimitive& mesh, std::vector<Surface::FaceHandle
         }
         Surface::FaceHandle face = surface.add_face(a, b, c);
         if (!face.is_valid())
-            face = surface.add_face(surface.add_vertex(surface.point(a)), surface.add_vertex(surface.point(b)),
-                                    surface.add_vertex(surface.point(c)));
+        {
+            const std::array<Surface::Point, 3> corner{surface.point(a), surface.point(b), surface.point(c)}; // copies
+            face = surface.add_face(surface.add_vertex(corner[0]), surface.add_vertex(corner[1]), surface.add_vertex(corner[2]));
+        }
         faces.push_back(face);
     }
     return surface;

@@ -1,0 +1,113 @@
+#include "compiler/gltf_accessor.h"
+#include "tests/compiler/gltf_builder.h"
+
+#include <gtest/gtest.h>
+
+namespace
+{
+/// Reads accessor 0 of what `builder` holds as floats.
+Result<FloatArray> floats(const GltfBuilder& builder, uint32_t min_components = 1, uint32_t max_components = 4)
+{
+    const TemporaryFolder folder;
+    const Result<GltfFile> file = builder.read(folder);
+    if (!file)
+        return file.error();
+    return readFloats(file->model, 0, min_components, max_components);
+}
+
+TEST(Accessor, ConvertsEveryComponentType)
+{
+    struct Case
+    {
+        int component_type;
+        bool normalized;
+        std::vector<uint8_t> bytes;
+        std::vector<float> want;
+    };
+    const std::vector<Case> cases{
+        {5120, false, {0x80, 0x7f}, {-128, 127}},
+        {5120, true, {0x80, 0x7f}, {-1, 1}}, // -128 / 127 is clamped
+        {5121, false, {0, 255}, {0, 255}},
+        {5121, true, {51, 255}, {0.2f, 1}},
+        {5122, false, {0x00, 0x80, 0xff, 0x7f}, {-32768, 32767}},
+        {5122, true, {0x01, 0x80, 0xff, 0x7f}, {-1, 1}},
+        {5123, false, {0x34, 0x12, 0xff, 0xff}, {0x1234, 65535}},
+        {5123, true, {0, 0, 0xff, 0xff}, {0, 1}},
+        {5125, false, {1, 0, 0, 0, 0, 0, 1, 0}, {1, 65536}},
+        {5126, false, {0, 0, 0x80, 0x3f, 0, 0, 0x20, 0xc1}, {1, -10}},
+    };
+    for (const Case& c : cases)
+    {
+        GltfBuilder builder;
+        builder.accessor(c.bytes, "SCALAR", c.component_type, 2, c.normalized);
+        const Result<FloatArray> got = floats(builder);
+        ASSERT_TRUE(got) << got.error().message;
+        EXPECT_EQ(got->values, c.want) << c.component_type << " normalized " << c.normalized;
+    }
+}
+
+TEST(Accessor, ReadsInterleavedElements)
+{
+    const std::vector<float> data{1, 2, 3, 10, 20, 4, 5, 6, 40, 50};
+    GltfBuilder builder;
+    const int view = builder.view(data.data(), data.size() * 4, 20);
+    builder.accessorOf(view, 12, "VEC2", 5126, 2);
+    const Result<FloatArray> got = floats(builder);
+    ASSERT_TRUE(got) << got.error().message;
+    EXPECT_EQ(got->values, (std::vector<float>{10, 20, 40, 50}));
+}
+
+TEST(Accessor, AppliesSparseValuesOverDataAndOverZeros)
+{
+    for (const bool with_data : {true, false})
+    {
+        GltfBuilder builder;
+        builder.accessor(std::vector<float>{1, 2, 3}, "SCALAR", 5126, 3);
+        const std::vector<uint8_t> indices{2};
+        const std::vector<float> values{7};
+        const int index_view = builder.view(indices.data(), 1);
+        const int value_view = builder.view(values.data(), 4);
+        builder.json["accessors"][0]["sparse"] = {{"count", 1},
+                                                  {"indices", {{"bufferView", index_view}, {"componentType", 5121}}},
+                                                  {"values", {{"bufferView", value_view}}}};
+        if (!with_data)
+            builder.json["accessors"][0].erase("bufferView");
+        const Result<FloatArray> got = floats(builder);
+        ASSERT_TRUE(got) << got.error().message;
+        EXPECT_EQ(got->values, with_data ? (std::vector<float>{1, 2, 7}) : (std::vector<float>{0, 0, 7}));
+    }
+}
+
+TEST(Accessor, RefusesWhatReachesOutside)
+{
+    const auto refused = [](const char* key, const nlohmann::json& value, const char* list = "accessors")
+    {
+        GltfBuilder builder;
+        builder.accessor(std::vector<float>{1, 2, 3}, "SCALAR", 5126, 3);
+        builder.json[list][0][key] = value;
+        const Result<FloatArray> got = floats(builder);
+        return !got && got.error().code == ExitCode::kInvalid && !got.error().message.empty();
+    };
+    EXPECT_TRUE(refused("count", 4));
+    EXPECT_TRUE(refused("count", 4000000000u));
+    EXPECT_TRUE(refused("byteOffset", 4));
+    EXPECT_TRUE(refused("byteOffset", 0xffffffffffffull));
+    EXPECT_TRUE(refused("bufferView", 9));
+    EXPECT_TRUE(refused("type", "VEC2"));
+    EXPECT_TRUE(refused("byteLength", 8, "bufferViews"));
+    EXPECT_TRUE(refused("byteLength", 4000, "bufferViews"));
+    EXPECT_TRUE(refused("byteOffset", 4, "bufferViews"));
+    EXPECT_TRUE(refused("buffer", 3, "bufferViews"));
+}
+
+TEST(Accessor, RefusesIndicesThatNameNoVertex)
+{
+    GltfBuilder builder;
+    const int indices = builder.accessor(std::vector<uint16_t>{0, 1, 3}, "SCALAR", 5123, 3);
+    builder.triangle({{"indices", indices}});
+    const auto imported = builder.import();
+    ASSERT_FALSE(imported);
+    EXPECT_EQ(imported.error().code, ExitCode::kInvalid);
+    EXPECT_NE(imported.error().message.find("vertex index 3"), std::string::npos) << imported.error().message;
+}
+} // namespace

@@ -1,0 +1,127 @@
+#include "compiler/camera_views.h"
+#include "tests/compiler/gltf_builder.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <sys/wait.h>
+
+#include <array>
+#include <cstdio>
+
+namespace
+{
+struct ProgramRun
+{
+    int code = -1;
+    std::string output; // stdout and stderr
+};
+
+ProgramRun run(const std::string& arguments)
+{
+    ProgramRun result;
+    FILE* pipe = popen(fmt::format("'{}' {} 2>&1", LUMICUT_COMPILE_PROGRAM, arguments).c_str(), "r");
+    std::array<char, 4096> buffer;
+    for (size_t n; (n = fread(buffer.data(), 1, buffer.size(), pipe)) > 0;)
+        result.output.append(buffer.data(), n);
+    const int status = pclose(pipe);
+    result.code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    return result;
+}
+
+class CommandLine : public testing::Test
+{
+protected:
+    CommandLine()
+    {
+        GltfBuilder builder;
+        builder.triangle();
+        builder.writeGltf(folder_ / "scene.gltf");
+    }
+    std::string path(const char* name) const { return fmt::format("'{}'", (folder_ / name).string()); }
+    std::string scene() const { return path("scene.gltf"); }
+
+    TemporaryFolder folder_;
+};
+
+TEST_F(CommandLine, CompilesBesideTheInputByDefault)
+{
+    const ProgramRun r = run(scene() + " --sun 0,-1,0,100 --view a=0,0,3,0,0,0,40 --compress zstd:1 --report " + path("r.json"));
+    EXPECT_EQ(r.code, 0) << r.output;
+    EXPECT_TRUE(std::filesystem::exists(folder_ / "scene.lumi"));
+    EXPECT_TRUE(std::filesystem::exists(folder_ / "r.json"));
+    EXPECT_NE(r.output.find("1 directional"), std::string::npos) << r.output;
+    EXPECT_EQ(r.output.find('\x1b'), std::string::npos);
+}
+
+TEST_F(CommandLine, QuietPrintsNothing)
+{
+    const ProgramRun r = run(scene() + " -q");
+    EXPECT_EQ(r.code, 0);
+    EXPECT_EQ(r.output, "");
+}
+
+TEST_F(CommandLine, VersionAndHelpSucceed)
+{
+    EXPECT_EQ(run("--version").output, "lumicut-compile " LUMICUT_VERSION "\n");
+    EXPECT_EQ(run("--help").code, 0);
+}
+
+TEST_F(CommandLine, MistakesInArgumentsAreUsageErrors)
+{
+    const std::vector<std::string> mistakes{"", "--nonsense", scene() + " -o out.txt", scene() + " --sun 1,2,3", scene() + " --sun 0,0,0,1",
+                                            scene() + " --sun 1,2,3,x", scene() + " --view a=1,2", scene() + " --view a=0,0,0,0,0,0,40",
+                                            scene() + " --view a=0,0,1,0,0,0,180", scene() + " --compress zip",
+                                            scene() + " --compress zstd:99", scene() + " --env sky.png", "scene.obj"};
+    for (const std::string& arguments : mistakes)
+        EXPECT_EQ(run(arguments).code, 1) << arguments;
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "scene.lumi"));
+}
+
+TEST_F(CommandLine, FilesThatCannotBeReadOrWrittenAreInputOutputErrors)
+{
+    std::filesystem::create_directory(folder_ / "folder.gltf");
+    for (const std::string& arguments : {path("gone.gltf"), path("folder.gltf"), scene() + " -o " + path("none/out.lumi"),
+                                         scene() + " --env " + path("gone.exr")})
+    {
+        const ProgramRun r = run(arguments);
+        EXPECT_EQ(r.code, 2) << arguments << "\n" << r.output;
+        EXPECT_NE(r.output.find(": error: "), std::string::npos) << r.output;
+    }
+}
+
+TEST_F(CommandLine, AnEmptyFileAndAGlbCutInHalfAreInvalid)
+{
+    GltfBuilder builder;
+    builder.triangle();
+    builder.writeGlb(folder_ / "whole.glb");
+    std::filesystem::copy_file(folder_ / "whole.glb", folder_ / "half.glb");
+    std::filesystem::resize_file(folder_ / "half.glb", std::filesystem::file_size(folder_ / "whole.glb") / 2);
+    writeBytes(folder_ / "empty.glb", "", 0);
+    for (const char* name : {"half.glb", "empty.glb"})
+    {
+        const ProgramRun r = run(path(name) + " -q");
+        EXPECT_EQ(r.code, 3) << name;
+        EXPECT_EQ(std::count(r.output.begin(), r.output.end(), '\n'), 1) << r.output;
+    }
+}
+
+TEST(CameraViews, AViewLooksFromTheEyeToTheTarget)
+{
+    const Result<CameraView> view = parseView("hall=1,2,3,1,2,-7,90");
+    ASSERT_TRUE(view) << view.error().message;
+    EXPECT_EQ(view->name, "hall");
+    EXPECT_EQ(view->position.z, 3);
+    EXPECT_FLOAT_EQ(view->forward.z, -1);
+    EXPECT_FLOAT_EQ(view->up.y, 1);
+    EXPECT_NEAR(view->vertical_fov, 1.5707963, 1e-6);
+}
+
+TEST(CameraViews, LookingStraightDownStillHasAnUpVector)
+{
+    const Result<CameraView> view = parseView("plan=0,5,0,0,0,0,60");
+    ASSERT_TRUE(view) << view.error().message;
+    EXPECT_FLOAT_EQ(view->forward.y, -1);
+    EXPECT_FLOAT_EQ(view->up.z, -1);
+}
+} // namespace
