@@ -1,0 +1,56 @@
+// Builds a binary glTF 2.0 file in memory.
+#pragma once
+#include "tools/scenes/shapes.h"
+#include "tools/scenes/textures.h"
+
+#include <nlohmann/json.hpp>
+
+#include <optional>
+#include <string>
+
+/// glTF metallic-roughness and extensions; what is left at its default is not written.
+struct MaterialDescription
+{
+    std::string name;
+    Vec3 base_color{1, 1, 1}; // linear
+    float metallic = 0;
+    float roughness = 1;
+    bool lambert = false; // KHR_materials_specular with factor and colour 0: no dielectric coat
+    bool double_sided = false;
+    Vec3 emission{}; // W/(m^2 sr)
+    float transmission = 0;
+    float ior = 1.5f;
+    float thickness = 0; // metres; above 0: a refracting body, else thin-walled
+    std::optional<Vec3> attenuation_color;
+    float attenuation_distance = 0; // metres
+    std::optional<uint32_t> base_color_texture, normal_texture, metallic_roughness_texture;
+    float normal_scale = 1;
+};
+
+class GltfWriter
+{
+public:
+    GltfWriter();
+
+    uint32_t addTexture(const std::string& name, const Texture& texture);
+    uint32_t addMaterial(const MaterialDescription& material);
+    uint32_t addMesh(const std::string& name, const Mesh& mesh, uint32_t material);
+    void addNode(const std::string& name, uint32_t mesh, Vec3 translation = {}, float turn_about_y = 0);
+    /// A mesh used once.
+    void add(const std::string& name, const Mesh& mesh, uint32_t material) { addNode(name, addMesh(name, mesh, material)); }
+    void addCamera(const std::string& name, Vec3 eye, Vec3 target, float vertical_fov); // radians
+    void addSun(const std::string& name, Vec3 travels, Vec3 color, float irradiance);   // W/m^2 facing it
+
+    uint64_t triangleCount() const { return triangle_count_; } // as placed by nodes
+    std::vector<uint8_t> glb() const;
+
+private:
+    uint32_t addView(const void* data, size_t bytes, int target);
+    uint32_t addAccessor(const void* data, size_t count, size_t components, int component_type, int target);
+    void useExtension(const std::string& name);
+
+    nlohmann::ordered_json json_;
+    std::vector<uint8_t> binary_;
+    std::vector<uint64_t> mesh_triangles_;
+    uint64_t triangle_count_ = 0;
+};
