@@ -363,7 +363,7 @@ GltfWriter atriumScene()
     addMirror(gltf, m);
     addFurniture(gltf, m);
     gltf.addCamera("hall", {-0.5f, 1.65f, 9.4f}, {0.12f, 3.05f, -4.0f}, 0.96f);
-    gltf.addCamera("gallery", {-2.85f, 6.45f, 7.7f}, {0.9f, 1.9f, -2.5f}, 1.0f);
+    gltf.addCamera("gallery", {-2.85f, 6.45f, 7.7f}, {1.7f, 1.3f, -2.2f}, 1.0f);
     gltf.addCamera("glass", {0.35f, 1.45f, -7.2f}, {-0.25f, 1.35f, -12.0f}, 0.80f);
     return gltf;
 }
