@@ -5,7 +5,7 @@
 
 #include <algorithm>
 #include <array>
-#include <optional>
+#include <sstream>
 
 namespace
 {
@@ -15,18 +15,30 @@ namespace fs = std::filesystem;
 constexpr std::array kCompiledIn{"libcli11-dev", "libflatbuffers-dev", "libimgui-dev", "libstb-dev",
                                  "libvulkan-volk-dev"};
 
-/// The Debian package that owns `file`.
-std::optional<std::string> packageOf(const fs::path& file)
+/// On merged-/usr systems dpkg may know /usr/lib/x as /lib/x, or the other way round.
+std::string otherName(const std::string& path)
 {
-    // On merged-/usr systems dpkg may know /usr/lib/x as /lib/x.
-    std::string path = file.string();
-    for (const std::string& candidate : {path, path.starts_with("/usr/") ? path.substr(4) : "/usr" + path})
+    return path.starts_with("/usr/") ? path.substr(4) : "/usr" + path;
+}
+
+/// The Debian package that owns each of `files`, by path; files that none owns are left out.
+std::map<std::string, std::string> packagesOf(const std::map<std::string, fs::path>& files)
+{
+    std::vector<std::string> query{"dpkg-query", "-S"};
+    for (const auto& [name, file] : files)
     {
-        const std::optional<std::string> line = outputOf({"dpkg-query", "-S", candidate}); // "name:amd64: /path"
-        if (line && !line->starts_with("diversion"))
-            return line->substr(0, line->find(':'));
+        query.push_back(file.string());
+        query.push_back(otherName(file.string()));
     }
-    return std::nullopt;
+    std::map<std::string, std::string> packages;
+    std::istringstream lines(outputOf(query));
+    for (std::string line; std::getline(lines, line);) // "name:amd64: /path"
+    {
+        const size_t path = line.rfind(": /");
+        if (path != std::string::npos && !line.starts_with("diversion"))
+            packages[line.substr(path + 2)] = line.substr(0, line.find(':'));
+    }
+    return packages;
 }
 
 bool addCopyright(const std::string& package, ArchiveEntries& entries)
@@ -44,10 +56,13 @@ void addLicenses(const std::map<std::string, fs::path>& libraries, ArchiveEntrie
                  std::vector<std::string>& unknown)
 {
     entries["LICENSES/lumicut-Apache-2.0.txt"] = {std::string(kLicenseText), false};
+    const std::map<std::string, std::string> packages = packagesOf(libraries);
     for (const auto& [name, file] : libraries)
     {
-        const std::optional<std::string> package = packageOf(file);
-        if (!package || !addCopyright(*package, entries))
+        auto package = packages.find(file.string());
+        if (package == packages.end())
+            package = packages.find(otherName(file.string()));
+        if (package == packages.end() || !addCopyright(package->second, entries))
             unknown.push_back(name);
     }
     for (const char* package : kCompiledIn)

@@ -105,7 +105,7 @@ Result<std::vector<std::string>> neededBy(const std::filesystem::path& path)
 std::map<std::string, std::filesystem::path> resolvedLibraries(const std::filesystem::path& program)
 {
     std::map<std::string, std::filesystem::path> found;
-    std::istringstream lines(outputOf({"ldd", std::filesystem::absolute(program).string()}).value_or(""));
+    std::istringstream lines(outputOf({"ldd", std::filesystem::absolute(program).string()}));
     for (std::string line; std::getline(lines, line);) // "\tlibz.so.1 => /lib/libz.so.1 (0x...)"
     {
         const size_t arrow = line.find(" => ");
