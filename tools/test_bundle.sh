@@ -35,7 +35,7 @@ folder=$(basename "$bundle" .tar.zst)
 # Every file is as the manifest says.
 (
     cd "$root/opt/bundle/$folder"
-    tr ',{}' '\n\n\n' <manifest.json | sed -n 's/.*"path": "\(.*\)".*/\1/p; s/.*"sha256": "\(.*\)".*/\1/p' |
+    sed -n 's/^ *"path": "\(.*\)",*$/\1/p; s/^ *"sha256": "\(.*\)",*$/\1/p' manifest.json |
         while read -r path && read -r sum; do echo "$sum  $path"; done >/tmp/bundle-sums.$$
     sha256sum --quiet -c /tmp/bundle-sums.$$
     rm -f /tmp/bundle-sums.$$
