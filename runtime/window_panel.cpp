@@ -8,20 +8,20 @@ void text(const std::string& line) { ImGui::TextUnformatted(line.data(), line.da
 
 void showFacts(const PanelFacts& facts)
 {
-    text(fmt::format("{}", facts.device));
+    text(std::string(facts.device));
     text(fmt::format("{} x {}, {} samples a pixel", facts.width, facts.height, facts.sample_count));
     text(fmt::format("{:8.2f} ms a frame ({:.1f} a second)", facts.frame_ms, facts.frame_ms > 0 ? 1000 / facts.frame_ms : 0));
     for (const StageTime& stage : facts.stages)
         text(fmt::format("{:8.2f} ms {}", stage.ms, stage.name));
 }
 
-bool chooseMode(Mode& mode)
+void chooseMode(Mode& mode)
 {
     int index = int(mode);
     ImGui::RadioButton("direct", &index, int(Mode::kDirect));
     ImGui::SameLine();
     ImGui::RadioButton("reference", &index, int(Mode::kReference));
-    return std::exchange(mode, Mode(index)) != mode;
+    mode = Mode(index);
 }
 
 std::optional<size_t> chooseCamera(std::span<const Camera> cameras)
@@ -86,9 +86,11 @@ bool editKnobs(Settings& settings)
 PanelActions drawPanel(const PanelFacts& facts, Settings& settings, Mode& mode)
 {
     PanelActions actions;
-    ImGui::SetNextWindowPos({8, 8}, ImGuiCond_FirstUseEver);
+    ImGui::SetNextWindowPos({8, 8}); // fixed: a window made small for a moment must not push it out
     // No keyboard navigation: Tab and the arrows belong to the window.
-    ImGui::Begin("Lumicut", nullptr, ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoFocusOnAppearing);
+    ImGui::Begin("Lumicut", nullptr,
+                 ImGuiWindowFlags_NoMove | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoNav |
+                     ImGuiWindowFlags_NoFocusOnAppearing);
     showFacts(facts);
     ImGui::Separator();
     chooseMode(mode);
@@ -96,7 +98,9 @@ PanelActions drawPanel(const PanelFacts& facts, Settings& settings, Mode& mode)
     ImGui::Separator();
     actions.camera = chooseCamera(facts.cameras);
     ImGui::Separator();
-    text(fmt::format("WASD QE fly at {:.3g} m/s (wheel, Shift)\ndrag looks, 1-9 cameras\nF1 panel, F12 screenshot, Esc quits", facts.speed));
+    text(fmt::format("WASD QE fly at {:.3g} m/s (wheel, Shift)\n"
+                     "drag looks, 1-9 cameras\nF1 panel, F12 screenshot, Esc quits",
+                     facts.speed));
     if (!facts.notice.empty())
         text(std::string(facts.notice));
     ImGui::End();
