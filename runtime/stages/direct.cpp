@@ -34,7 +34,7 @@ void DirectStage::record(Recorder& rec, const RayStage& rays, const Input& in) c
             continue;
         rays.close(rec, emitter_queue_.size);
         rays.closest(rec, emitter_queue_, hits_, traceSeed(in.seed, sample, ~0u, false));
-        rec.runIndirect(emitted_, emitter_queue_.size, 0, params,
+        rec.runIndirect(emitted_, emitter_queue_.size, 0, NoParams{},
                         {{"EmitterQueue", emitter_queue_.size}, {"Rays", emitter_queue_.rays}, {"Hits", hits_},
                          {"EmitterRays", emitter_rays_}, {"Radiance", in.radiance}});
     }

@@ -9,7 +9,6 @@
 // one ray a point, so the sum does not depend on thread order.
 
 layout(local_size_x = kRaysGroupSize) in;
-layout(push_constant, scalar) uniform Params { DirectParams params; };
 
 layout(set = 1, binding = 0, scalar) readonly buffer EmitterQueue { QueueSize emitter_queue; };
 layout(set = 1, binding = 1, scalar) readonly buffer Rays { Ray rays[]; };
