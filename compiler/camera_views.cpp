@@ -18,7 +18,8 @@ CameraView lookAt(std::string name, gpu::vec3 eye, gpu::vec3 target, float verti
     view.position = eye;
     view.forward = normalizeOr(target - eye, {0, 0, -1});
     const gpu::vec3 world_up{0, 1, 0};
-    view.up = normalizeOr(world_up - view.forward * dot(world_up, view.forward), {0, 0, view.forward.y > 0 ? 1.0f : -1.0f});
+    view.up =
+        normalizeOr(world_up - view.forward * dot(world_up, view.forward), {0, 0, view.forward.y > 0 ? 1.0f : -1.0f});
     view.vertical_fov = vertical_fov;
     return view;
 }
@@ -53,14 +54,16 @@ Result<CameraView> parseView(const std::string& text)
         return Error{ExitCode::kUsage, fmt::format("--view \"{}\" is not NAME=EX,EY,EZ,TX,TY,TZ,YFOV", text)};
     const Result<std::vector<float>> numbers = parseNumbers(text.substr(equals + 1), 7);
     if (!numbers)
-        return Error{ExitCode::kUsage, fmt::format("--view: {} (NAME=EX,EY,EZ,TX,TY,TZ,YFOV)", numbers.error().message)};
+        return Error{ExitCode::kUsage,
+                     fmt::format("--view: {} (NAME=EX,EY,EZ,TX,TY,TZ,YFOV)", numbers.error().message)};
     const std::vector<float>& n = *numbers;
     const gpu::vec3 eye{n[0], n[1], n[2]};
     const gpu::vec3 target{n[3], n[4], n[5]};
     if (length(target - eye) == 0)
         return Error{ExitCode::kUsage, fmt::format("--view \"{}\": eye and target are the same point", text)};
     if (!(n[6] > 0) || !(n[6] < 180))
-        return Error{ExitCode::kUsage, fmt::format("--view \"{}\": the field of view must lie between 0 and 180 degrees", text)};
+        return Error{ExitCode::kUsage,
+                     fmt::format("--view \"{}\": the field of view must lie between 0 and 180 degrees", text)};
     return lookAt(text.substr(0, equals), eye, target, n[6] * kPi / 180);
 }
 

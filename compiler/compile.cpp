@@ -71,7 +71,8 @@ LightTables lightsOrDefault(const CompileOptions& options, SceneData& scene)
         scene.warnings.push_back("the scene has no light at all: every picture of it will be black");
         return lights;
     }
-    scene.warnings.push_back("the scene has no light at all: it gets the default sky and sun (--no-default-light leaves it dark)");
+    scene.warnings.push_back(
+        "the scene has no light at all: it gets the default sky and sun (--no-default-light leaves it dark)");
     scene.environment = defaultSky();
     scene.lights = {defaultSun()};
     return buildLights(scene);
@@ -111,11 +112,9 @@ void addChunk(std::vector<package::ChunkSource>& chunks, uint32_t id, const std:
         chunks.push_back({id, index, std::as_bytes(std::span(data))});
 }
 
-Result<std::vector<package::WrittenChunk>> writePackage(const CompileOptions& options, const SceneData& scene,
-                                                        const Bvh& bvh, const LightTables& lights,
-                                                        const TexturePages& textures,
-                                                        const EnvironmentImportance* importance,
-                                                        const lumicut::fb::MetaT& meta)
+Result<std::vector<package::WrittenChunk>>
+writePackage(const CompileOptions& options, const SceneData& scene, const Bvh& bvh, const LightTables& lights,
+             const TexturePages& textures, const EnvironmentImportance* importance, const lumicut::fb::MetaT& meta)
 {
     const std::vector<uint8_t> meta_bytes = encodeMeta(meta);
     const std::vector<gpu::Triangle> triangles = packTriangles(scene, lights);
@@ -137,8 +136,8 @@ Result<std::vector<package::WrittenChunk>> writePackage(const CompileOptions& op
         addChunk(chunks, package::kEnvironmentChunk, scene.environment->texels);
         addChunk(chunks, package::kEnvironmentTexelsChunk, importance->texels);
     }
-    std::sort(chunks.begin(), chunks.end(), [](const auto& a, const auto& b)
-              { return a.id != b.id ? a.id < b.id : a.index < b.index; });
+    std::sort(chunks.begin(), chunks.end(),
+              [](const auto& a, const auto& b) { return a.id != b.id ? a.id < b.id : a.index < b.index; });
     return package::write(options.output, chunks, {options.zstd_level});
 }
 
@@ -168,7 +167,8 @@ Result<CompileReport> runPipeline(const CompileOptions& options)
     if (!imported)
         return imported.error();
     SceneData& scene = imported->scene;
-    watch.stage("geometry", fmt::format("{} primitives, {} objects", imported->primitives.size(), imported->instances.size()));
+    watch.stage("geometry",
+                fmt::format("{} primitives, {} objects", imported->primitives.size(), imported->instances.size()));
 
     Result<std::vector<TextureImage>> images = decodeImages(*file, imported->images);
     if (!images)
@@ -181,7 +181,8 @@ Result<CompileReport> runPipeline(const CompileOptions& options)
         return mesh.error();
     scene.mesh = std::move(*mesh);
     imported->primitives = {};
-    watch.stage("mesh", fmt::format("{} triangles, {} vertices", scene.mesh.triangles.size(), scene.mesh.positions.size()));
+    watch.stage("mesh",
+                fmt::format("{} triangles, {} vertices", scene.mesh.triangles.size(), scene.mesh.positions.size()));
 
     if (const Status status = addViewsAndLights(options, scene); !status)
         return status.error();
@@ -190,15 +191,16 @@ Result<CompileReport> runPipeline(const CompileOptions& options)
     if (scene.environment)
         importance = buildImportance(*scene.environment);
     const EnvironmentImportance* const sky = importance ? &*importance : nullptr;
-    watch.stage("lights", fmt::format("{} lights, {} caustic targets", lights.lights.size(), lights.caustic_targets.size()));
+    watch.stage("lights",
+                fmt::format("{} lights, {} caustic targets", lights.lights.size(), lights.caustic_targets.size()));
 
     const Bvh bvh = buildBvh(scene.mesh, triangleFlags(scene));
     watch.stage("bvh", fmt::format("{} nodes, SAH cost {:.1f}, depth {}", bvh.nodes.size(), bvh.sah_cost, bvh.depth));
 
     const TexturePages textures = buildTexturePages(scene.images, scene.texture_uses);
     if (textures.resized > 0)
-        scene.warnings.push_back(fmt::format("{} images were resized so that {} texture pages suffice", textures.resized,
-                                             gpu::kTexturePageCount));
+        scene.warnings.push_back(fmt::format("{} images were resized so that {} texture pages suffice",
+                                             textures.resized, gpu::kTexturePageCount));
     watch.stage("textures", fmt::format("{} images, {} pages", scene.images.size(), textures.pages.size()));
 
     report.meta = makeMeta(options, scene, bvh, lights, textures, sky);
@@ -236,7 +238,8 @@ Status checkPaths(const CompileOptions& options)
     const auto suffix = [](const std::filesystem::path& path)
     {
         std::string text = path.extension().string();
-        std::transform(text.begin(), text.end(), text.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? char(c + 32) : c; });
+        std::transform(text.begin(), text.end(), text.begin(),
+                       [](char c) { return c >= 'A' && c <= 'Z' ? char(c + 32) : c; });
         return text;
     };
     if (suffix(options.input) != ".gltf" && suffix(options.input) != ".glb")
@@ -244,13 +247,20 @@ Status checkPaths(const CompileOptions& options)
     if (suffix(options.output) != ".lumi")
         return Error{ExitCode::kUsage, fmt::format("the output \"{}\" must end in .lumi", options.output.string())};
     if (options.environment && suffix(*options.environment) != ".exr" && suffix(*options.environment) != ".hdr")
-        return Error{ExitCode::kUsage, fmt::format("the environment \"{}\" must be an .exr or .hdr file", options.environment->string())};
+        return Error{ExitCode::kUsage,
+                     fmt::format("the environment \"{}\" must be an .exr or .hdr file", options.environment->string())};
+    return checkWritable(options.output);
+}
+
+Status checkWritable(const std::filesystem::path& path)
+{
     std::error_code error;
-    if (std::filesystem::is_directory(options.output, error))
-        return Error{ExitCode::kIo, fmt::format("the output \"{}\" is a folder; name a file", options.output.string())};
-    const std::filesystem::path folder = options.output.has_parent_path() ? options.output.parent_path() : ".";
+    if (std::filesystem::is_directory(path, error))
+        return Error{ExitCode::kIo, fmt::format("the output \"{}\" is a folder; name a file", path.string())};
+    const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
     if (!std::filesystem::is_directory(folder, error))
-        return Error{ExitCode::kIo, fmt::format("the output folder \"{}\" does not exist; make it first", folder.string())};
+        return Error{ExitCode::kIo,
+                     fmt::format("the output folder \"{}\" does not exist; make it first", folder.string())};
     if (access(folder.c_str(), W_OK) != 0)
         return Error{ExitCode::kIo, fmt::format("the output folder \"{}\" cannot be written to", folder.string())};
     return Success{};

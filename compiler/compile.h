@@ -18,10 +18,10 @@ struct CompileOptions
     std::optional<std::filesystem::path> environment{};
     std::optional<PunctualLight> sun{};
     std::vector<CameraView> views{}; // come before the file's own cameras
-    bool default_light = true;      // give a scene without any light a sky and a sun
-    int zstd_level = 0;             // 0: no compression
+    bool default_light = true;       // give a scene without any light a sky and a sun
+    int zstd_level = 0;              // 0: no compression
     std::vector<std::string> text{}; // the options as given, for the package's provenance
-    std::function<void(double seconds, const std::string& line)> progress{};// after each stage; may be empty
+    std::function<void(double seconds, const std::string& line)> progress{}; // after each stage; may be empty
 };
 
 struct StageTime
@@ -51,3 +51,6 @@ Result<CompileReport> compile(const CompileOptions& options);
 
 /// What can be known before any work: suffixes, and whether the output's folder can be written to.
 Status checkPaths(const CompileOptions& options);
+
+/// kIo where a file cannot be made at `path`: it is a folder, or its folder is missing or read-only.
+Status checkWritable(const std::filesystem::path& path);

@@ -25,7 +25,10 @@ gpu::vec3 fromOctahedral(float x, float y)
     return normalizeOr(n, {0, 0, 1});
 }
 
-int32_t snorm(float v, float scale) { return int32_t(std::lround(std::clamp(v, -1.0f, 1.0f) * scale)); }
+int32_t snorm(float v, float scale)
+{
+    return int32_t(std::lround(std::clamp(v, -1.0f, 1.0f) * scale));
+}
 
 uint16_t encodeHalf(float f)
 {
@@ -56,8 +59,8 @@ uint32_t encodeTangent(gpu::vec3 tangent, bool negative_bitangent)
 
 gpu::uvec2 encodeColor(float r, float g, float b, float a)
 {
-    return {uint32_t(encodeHalf(r)) | uint32_t(encodeHalf(g)) << 16,
-            uint32_t(encodeHalf(b)) | uint32_t(encodeHalf(a)) << 16};
+    return {uint32_t(encodeHalf(r)) | uint32_t(encodeHalf(g)) << 16, uint32_t(encodeHalf(b)) | uint32_t(encodeHalf(a))
+                                                                                                   << 16};
 }
 
 gpu::vec3 decodeNormal(uint32_t encoded)

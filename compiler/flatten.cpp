@@ -24,9 +24,11 @@ struct Double3
 /// Twice the area is below what a shader can still turn into a normal, or below rounding of the longest edge.
 bool isDegenerate(gpu::vec3 a, gpu::vec3 b, gpu::vec3 c)
 {
-    constexpr double kSmallestArea = 1e-18;     // m^2; its square is still a normal float
-    constexpr double kFlattest = 1e-8;          // height over longest edge
-    const auto edge = [](gpu::vec3 p, gpu::vec3 q) { return Double3{double(q.x) - p.x, double(q.y) - p.y, double(q.z) - p.z}; };
+    constexpr double kSmallestArea = 1e-18; // m^2; its square is still a normal float
+    constexpr double kFlattest = 1e-8;      // height over longest edge
+    const auto edge = [](gpu::vec3 p, gpu::vec3 q) {
+        return Double3{double(q.x) - p.x, double(q.y) - p.y, double(q.z) - p.z};
+    };
     const auto square = [](Double3 v) { return v.x * v.x + v.y * v.y + v.z * v.z; };
     const Double3 u = edge(a, b);
     const Double3 v = edge(a, c);
@@ -132,8 +134,7 @@ private:
             ++counts_.degenerate_triangles;
             return;
         }
-        const gpu::vec3 facing =
-            normalizeOr(cross(world_[t.y] - world_[t.x], world_[t.z] - world_[t.x]), {0, 1, 0});
+        const gpu::vec3 facing = normalizeOr(cross(world_[t.y] - world_[t.x], world_[t.z] - world_[t.x]), {0, 1, 0});
         const size_t vertices_before = mesh_.positions.size();
         std::array<uint32_t, 3> fresh{kUnset, kUnset, kUnset};
         const auto vertex = [&](uint32_t v, size_t corner)
@@ -212,8 +213,9 @@ Result<WorldMesh> flatten(const ImportedScene& imported, ImportCounts& counts, s
 {
     const size_t total = triangleTotal(imported);
     if (total > kMaxTriangles)
-        return Error{ExitCode::kUnsupported, fmt::format("it has {} triangles with all its instances; at most {} are supported",
-                                                         total, kMaxTriangles)};
+        return Error{
+            ExitCode::kUnsupported,
+            fmt::format("it has {} triangles with all its instances; at most {} are supported", total, kMaxTriangles)};
     Flattener flattener(total, counts);
     uint32_t object = 0;
     for (const ImportedInstance& instance : imported.instances)
@@ -230,8 +232,9 @@ Result<WorldMesh> flatten(const ImportedScene& imported, ImportCounts& counts, s
         return Error{ExitCode::kInvalid, "its default scene holds no triangles, so there is nothing to render"};
     mesh.object_count = object;
     if (flattener.repairedNormals() > 0)
-        warnings.push_back(fmt::format("{} vertex normals have no direction and were replaced by that of their triangle",
-                                       flattener.repairedNormals()));
+        warnings.push_back(
+            fmt::format("{} vertex normals have no direction and were replaced by that of their triangle",
+                        flattener.repairedNormals()));
     if (flattener.repairedValues() > 0)
         warnings.push_back(fmt::format("{} texture coordinates or vertex colours are not finite and became 0",
                                        flattener.repairedValues()));

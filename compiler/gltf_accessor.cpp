@@ -20,13 +20,26 @@ bool withComponentType(int component_type, const Use& use)
 {
     switch (component_type)
     {
-    case TINYGLTF_COMPONENT_TYPE_BYTE: use(int8_t{}); return true;
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: use(uint8_t{}); return true;
-    case TINYGLTF_COMPONENT_TYPE_SHORT: use(int16_t{}); return true;
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: use(uint16_t{}); return true;
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT: use(uint32_t{}); return true;
-    case TINYGLTF_COMPONENT_TYPE_FLOAT: use(float{}); return true;
-    default: return false;
+    case TINYGLTF_COMPONENT_TYPE_BYTE:
+        use(int8_t{});
+        return true;
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+        use(uint8_t{});
+        return true;
+    case TINYGLTF_COMPONENT_TYPE_SHORT:
+        use(int16_t{});
+        return true;
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+        use(uint16_t{});
+        return true;
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
+        use(uint32_t{});
+        return true;
+    case TINYGLTF_COMPONENT_TYPE_FLOAT:
+        use(float{});
+        return true;
+    default:
+        return false;
     }
 }
 
@@ -63,7 +76,8 @@ Result<ByteView> elementBytes(const tinygltf::Model& model, int buffer_view, siz
         return invalid(accessor, view.error().message);
     const size_t stride = view->stride == 0 ? element_bytes : view->stride;
     if (stride < element_bytes)
-        return invalid(accessor, fmt::format("its elements of {} bytes overlap: the stride is {}", element_bytes, stride));
+        return invalid(accessor,
+                       fmt::format("its elements of {} bytes overlap: the stride is {}", element_bytes, stride));
     if (offset > view->bytes || (count > 0 && (view->bytes - offset < element_bytes ||
                                                (view->bytes - offset - element_bytes) / stride < count - 1)))
         return invalid(accessor, "an accessor reaches past the end of its buffer view");
@@ -94,17 +108,18 @@ Status applySparse(const tinygltf::Model& model, int accessor, FloatArray& array
     const tinygltf::Accessor& source = model.accessors[size_t(accessor)];
     const auto& sparse = source.sparse;
     const int index_bytes = tinygltf::GetComponentSizeInBytes(uint32_t(sparse.indices.componentType));
-    const size_t element_bytes = array.components * size_t(tinygltf::GetComponentSizeInBytes(uint32_t(source.componentType)));
+    const size_t element_bytes =
+        array.components * size_t(tinygltf::GetComponentSizeInBytes(uint32_t(source.componentType)));
     if (sparse.count < 0 || size_t(sparse.count) > array.count || index_bytes <= 0 || sparse.indices.byteOffset < 0 ||
         sparse.values.byteOffset < 0)
         return invalid(accessor, "the sparse part of an accessor is damaged");
     const size_t count = size_t(sparse.count);
-    const Result<ByteView> index_view = elementBytes(model, sparse.indices.bufferView, size_t(sparse.indices.byteOffset),
-                                                     count, size_t(index_bytes), accessor);
+    const Result<ByteView> index_view = elementBytes(
+        model, sparse.indices.bufferView, size_t(sparse.indices.byteOffset), count, size_t(index_bytes), accessor);
     if (!index_view)
         return index_view.error();
-    const Result<ByteView> value_view = elementBytes(model, sparse.values.bufferView, size_t(sparse.values.byteOffset),
-                                                     count, element_bytes, accessor);
+    const Result<ByteView> value_view =
+        elementBytes(model, sparse.values.bufferView, size_t(sparse.values.byteOffset), count, element_bytes, accessor);
     if (!value_view)
         return value_view.error();
     const auto indices = readUnsigned(*index_view, count, sparse.indices.componentType, accessor);
@@ -112,7 +127,8 @@ Status applySparse(const tinygltf::Model& model, int accessor, FloatArray& array
         return indices.error();
     std::vector<float> values(count * array.components);
     withComponentType(source.componentType,
-                      [&]<typename From>(From) {
+                      [&]<typename From>(From)
+                      {
                           copyElements<From>(*value_view, count, array.components, values.data(),
                                              [&](From v) { return toFloat(v, source.normalized); });
                       });
@@ -144,7 +160,8 @@ Result<FloatArray> readFloats(const tinygltf::Model& model, int accessor, uint32
     const int components = tinygltf::GetNumComponentsInType(uint32_t(source.type));
     const int component_bytes = tinygltf::GetComponentSizeInBytes(uint32_t(source.componentType));
     if (components < int(min_components) || components > int(max_components) || source.type == TINYGLTF_TYPE_MAT2)
-        return invalid(accessor, fmt::format("an accessor of {} to {} components is expected", min_components, max_components));
+        return invalid(accessor,
+                       fmt::format("an accessor of {} to {} components is expected", min_components, max_components));
     FloatArray array{uint32_t(components), source.count, {}};
     if (source.bufferView < 0)
     {
@@ -160,7 +177,8 @@ Result<FloatArray> readFloats(const tinygltf::Model& model, int accessor, uint32
             return view.error();
         array.values.resize(array.count * array.components);
         if (!withComponentType(source.componentType,
-                               [&]<typename From>(From) {
+                               [&]<typename From>(From)
+                               {
                                    copyElements<From>(*view, array.count, array.components, array.values.data(),
                                                       [&](From v) { return toFloat(v, source.normalized); });
                                }))
@@ -181,7 +199,8 @@ Result<std::vector<uint32_t>> readIndices(const tinygltf::Model& model, int acce
     if (source.type != TINYGLTF_TYPE_SCALAR || source.sparse.isSparse)
         return invalid(accessor, "indices must be a plain scalar accessor");
     const int bytes = tinygltf::GetComponentSizeInBytes(uint32_t(source.componentType));
-    const auto view = elementBytes(model, source.bufferView, source.byteOffset, source.count, size_t(std::max(bytes, 1)), accessor);
+    const auto view =
+        elementBytes(model, source.bufferView, source.byteOffset, source.count, size_t(std::max(bytes, 1)), accessor);
     if (!view)
         return view.error();
     return readUnsigned(*view, source.count, source.componentType, accessor);

@@ -14,18 +14,22 @@ float normalizedScale(const tinygltf::Accessor& accessor, const draco::PointAttr
         return 1;
     switch (accessor.componentType)
     {
-    case TINYGLTF_COMPONENT_TYPE_BYTE: return 1.0f / 127;
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: return 1.0f / 255;
-    case TINYGLTF_COMPONENT_TYPE_SHORT: return 1.0f / 32767;
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: return 1.0f / 65535;
-    default: return 1;
+    case TINYGLTF_COMPONENT_TYPE_BYTE:
+        return 1.0f / 127;
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+        return 1.0f / 255;
+    case TINYGLTF_COMPONENT_TYPE_SHORT:
+        return 1.0f / 32767;
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+        return 1.0f / 65535;
+    default:
+        return 1;
     }
 }
 
 Result<FloatArray> readAttribute(const draco::Mesh& mesh, int unique_id, const tinygltf::Accessor& accessor)
 {
-    const draco::PointAttribute* attribute =
-        unique_id < 0 ? nullptr : mesh.GetAttributeByUniqueId(uint32_t(unique_id));
+    const draco::PointAttribute* attribute = unique_id < 0 ? nullptr : mesh.GetAttributeByUniqueId(uint32_t(unique_id));
     const int components = tinygltf::GetNumComponentsInType(uint32_t(accessor.type));
     if (attribute == nullptr || attribute->num_components() != components || components > 4)
         return Error{ExitCode::kInvalid, fmt::format("Draco attribute {} is missing or of another type", unique_id)};

@@ -9,7 +9,7 @@
 struct DracoMesh
 {
     size_t vertex_count = 0;
-    std::vector<uint32_t> indices;               // 3 a triangle, all below vertex_count
+    std::vector<uint32_t> indices;                // 3 a triangle, all below vertex_count
     std::map<std::string, FloatArray> attributes; // by glTF semantic
 };
 

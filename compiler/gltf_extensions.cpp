@@ -55,13 +55,16 @@ Result<std::set<std::string>> names(const nlohmann::json& document, const char* 
 std::string refusal(const std::string& name)
 {
     if (name == "KHR_texture_basisu")
-        return "its textures are there as KTX2 (Basis Universal) only, which is not supported; export them as PNG, JPEG "
+        return "its textures are there as KTX2 (Basis Universal) only, which is not supported; export them as PNG, "
+               "JPEG "
                "or WebP (required extension KHR_texture_basisu)";
     if (name == "EXT_meshopt_compression" || name == "KHR_meshopt_compression")
         return fmt::format("its geometry is meshopt-compressed, which is not supported; export it uncompressed or with "
-                           "Draco (required extension {})", name);
-    return fmt::format("it requires the extension {}, which is not supported; export the scene without it (/extensionsRequired)",
-                       name.substr(0, 100));
+                           "Draco (required extension {})",
+                           name);
+    return fmt::format(
+        "it requires the extension {}, which is not supported; export the scene without it (/extensionsRequired)",
+        name.substr(0, 100));
 }
 } // namespace
 

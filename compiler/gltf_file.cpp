@@ -40,8 +40,8 @@ Result<Container> splitGlb(const Bytes& bytes)
     if (version != 2)
         return Error{ExitCode::kUnsupported, fmt::format("binary glTF version {} is not supported, only 2", version)};
     if (total > bytes.size())
-        return Error{ExitCode::kInvalid, fmt::format("the file is cut short: its header says {} bytes, it has {}",
-                                                     total, bytes.size())};
+        return Error{ExitCode::kInvalid,
+                     fmt::format("the file is cut short: its header says {} bytes, it has {}", total, bytes.size())};
     Container container;
     uint64_t offset = 12;
     for (int chunk = 0; offset + 8 <= total; ++chunk)
@@ -109,15 +109,18 @@ Result<json> parseJson(std::string_view text)
 Status checkVersion(const json& document)
 {
     const auto asset = document.find("asset");
-    if (asset == document.end() || !asset->is_object() || !asset->contains("version") || !(*asset)["version"].is_string())
+    if (asset == document.end() || !asset->is_object() || !asset->contains("version") ||
+        !(*asset)["version"].is_string())
         return Error{ExitCode::kInvalid, "it does not say which glTF version it is (/asset/version)"};
     const std::string version = (*asset)["version"];
     if (!version.starts_with("2."))
-        return Error{ExitCode::kUnsupported, fmt::format("glTF version {} is not supported, only 2.0 (/asset/version)",
-                                                         version.substr(0, 16))};
-    if (const auto minimum = asset->find("minVersion"); minimum != asset->end() && minimum->is_string() && *minimum != "2.0")
+        return Error{ExitCode::kUnsupported,
+                     fmt::format("glTF version {} is not supported, only 2.0 (/asset/version)", version.substr(0, 16))};
+    if (const auto minimum = asset->find("minVersion");
+        minimum != asset->end() && minimum->is_string() && *minimum != "2.0")
         return Error{ExitCode::kUnsupported, fmt::format("it asks for a reader of glTF {} at least, this one knows 2.0 "
-                                                         "(/asset/minVersion)", minimum->get<std::string>().substr(0, 16))};
+                                                         "(/asset/minVersion)",
+                                                         minimum->get<std::string>().substr(0, 16))};
     return Success{};
 }
 
@@ -167,7 +170,8 @@ Result<Bytes> readBuffer(const json& buffer, size_t i, const std::optional<ByteV
         if (isMeshoptFallback(buffer))
             return Error{ExitCode::kUnsupported,
                          fmt::format("its geometry is there in meshopt-compressed form only, which is not supported; "
-                                     "export it without meshopt compression (/buffers/{})", i)};
+                                     "export it without meshopt compression (/buffers/{})",
+                                     i)};
         return Error{ExitCode::kInvalid, fmt::format("a buffer has no data: it names no file (/buffers/{})", i)};
     }
     if (!uri->is_string())
@@ -252,7 +256,8 @@ struct LoadedBuffers
     }
 };
 
-Result<LoadedBuffers> takeBuffers(json& document, const std::optional<ByteView>& bin, const std::filesystem::path& folder)
+Result<LoadedBuffers> takeBuffers(json& document, const std::optional<ByteView>& bin,
+                                  const std::filesystem::path& folder)
 {
     LoadedBuffers loaded;
     if (!document.contains("buffers"))
@@ -278,7 +283,8 @@ Status parseModel(const json& document, LoadedBuffers& buffers, tinygltf::Model&
     {
         const std::string text = document.dump();
         tinygltf::TinyGLTF loader;
-        loader.SetFsCallbacks({&LoadedBuffers::exists, &LoadedBuffers::expand, &LoadedBuffers::read, nullptr, &buffers});
+        loader.SetFsCallbacks(
+            {&LoadedBuffers::exists, &LoadedBuffers::expand, &LoadedBuffers::read, nullptr, &buffers});
         ok = loader.LoadASCIIFromString(&model, &error, &warning, text.data(), unsigned(text.size()), "buffers");
     }
     catch (const std::bad_alloc&)

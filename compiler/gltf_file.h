@@ -23,10 +23,10 @@ struct GltfImage
 
 struct GltfFile
 {
-    std::filesystem::path folder;       // relative URIs start here
-    tinygltf::Model model;              // buffers loaded; indices between its parts are unchecked; no images
-    std::vector<GltfImage> images;      // as in the file
-    std::vector<std::string> warnings;  // full sentences
+    std::filesystem::path folder;      // relative URIs start here
+    tinygltf::Model model;             // buffers loaded; indices between its parts are unchecked; no images
+    std::vector<GltfImage> images;     // as in the file
+    std::vector<std::string> warnings; // full sentences
 };
 
 /// @return kIo where the file cannot be read, kInvalid where it is not glTF 2 or one of its buffers is missing,

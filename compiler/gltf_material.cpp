@@ -41,8 +41,14 @@ gpu::vec3 color(const std::vector<double>& rgb, gpu::vec3 fallback)
     return isFinite(c) ? c : fallback;
 }
 
-gpu::vec3 nonNegative(gpu::vec3 c) { return {std::max(c.x, 0.0f), std::max(c.y, 0.0f), std::max(c.z, 0.0f)}; }
-float unitRange(double v) { return std::isfinite(v) ? float(std::clamp(v, 0.0, 1.0)) : 1.0f; }
+gpu::vec3 nonNegative(gpu::vec3 c)
+{
+    return {std::max(c.x, 0.0f), std::max(c.y, 0.0f), std::max(c.z, 0.0f)};
+}
+float unitRange(double v)
+{
+    return std::isfinite(v) ? float(std::clamp(v, 0.0, 1.0)) : 1.0f;
+}
 
 uint32_t wrapMode(int gltf_wrap)
 {
@@ -88,7 +94,8 @@ public:
         if (const Value& map = info.Get("extensions"); map.IsObject())
             extensions = map.Get<Value::Object>();
         const Value& tex_coord = info.Get("texCoord");
-        return use(info.Get("index").GetNumberAsInt(), tex_coord.IsInt() ? tex_coord.GetNumberAsInt() : 0, extensions, srgb);
+        return use(info.Get("index").GetNumberAsInt(), tex_coord.IsInt() ? tex_coord.GetNumberAsInt() : 0, extensions,
+                   srgb);
     }
 
     Status status() const { return error_.message.empty() ? Status(Success{}) : Status(error_); }
@@ -107,13 +114,16 @@ private:
         if (webp != textures[size_t(texture)].extensions.end() && webp->second.Get("source").IsInt())
             source = webp->second.Get("source").GetNumberAsInt();
         if (source < 0 && textures[size_t(texture)].extensions.contains("KHR_texture_basisu"))
-            return fail(ExitCode::kUnsupported,
-                        fmt::format("a texture is there as KTX2 (Basis Universal) only, which is not supported; export it as "
-                                    "PNG, JPEG or WebP (/textures/{})", texture));
+            return fail(
+                ExitCode::kUnsupported,
+                fmt::format("a texture is there as KTX2 (Basis Universal) only, which is not supported; export it as "
+                            "PNG, JPEG or WebP (/textures/{})",
+                            texture));
         if (source == -1) // allowed: an extension that is not honoured may hold it
             return -1;
         if (source < 0 || size_t(source) >= file_.images.size())
-            return fail(ExitCode::kInvalid, fmt::format("image {} does not exist (/textures/{}/source)", source, texture));
+            return fail(ExitCode::kInvalid,
+                        fmt::format("image {} does not exist (/textures/{}/source)", source, texture));
         return source;
     }
 
@@ -187,8 +197,9 @@ gpu::Material defaultMaterial()
     m.ior = 1.5f;
     m.specular = 1;
     m.specular_color = {1, 1, 1};
-    for (uint32_t* texture : {&m.base_color_texture, &m.metallic_roughness_texture, &m.normal_texture, &m.emissive_texture,
-                              &m.transmission_texture, &m.specular_texture, &m.specular_color_texture})
+    for (uint32_t* texture :
+         {&m.base_color_texture, &m.metallic_roughness_texture, &m.normal_texture, &m.emissive_texture,
+          &m.transmission_texture, &m.specular_texture, &m.specular_color_texture})
         *texture = gpu::kNone;
     return m;
 }
@@ -200,11 +211,13 @@ void readCore(const tinygltf::Material& from, TextureReader& textures, gpu::Mate
     m.alpha = pbr.baseColorFactor.size() == 4 ? unitRange(pbr.baseColorFactor[3]) : 1.0f;
     m.metallic = unitRange(pbr.metallicFactor);
     m.roughness = unitRange(pbr.roughnessFactor);
-    m.base_color_texture = textures.use(pbr.baseColorTexture.index, pbr.baseColorTexture.texCoord,
-                                        pbr.baseColorTexture.extensions, true);
-    m.metallic_roughness_texture = textures.use(pbr.metallicRoughnessTexture.index, pbr.metallicRoughnessTexture.texCoord,
-                                                pbr.metallicRoughnessTexture.extensions, false);
-    m.normal_texture = textures.use(from.normalTexture.index, from.normalTexture.texCoord, from.normalTexture.extensions, false);
+    m.base_color_texture =
+        textures.use(pbr.baseColorTexture.index, pbr.baseColorTexture.texCoord, pbr.baseColorTexture.extensions, true);
+    m.metallic_roughness_texture =
+        textures.use(pbr.metallicRoughnessTexture.index, pbr.metallicRoughnessTexture.texCoord,
+                     pbr.metallicRoughnessTexture.extensions, false);
+    m.normal_texture =
+        textures.use(from.normalTexture.index, from.normalTexture.texCoord, from.normalTexture.extensions, false);
     m.normal_scale = std::isfinite(from.normalTexture.scale) ? float(from.normalTexture.scale) : 1.0f;
     if (from.alphaMode == "MASK")
         m.flags |= gpu::kMaterialAlphaMask;
@@ -254,7 +267,8 @@ void readSpecular(const Value& specular, TextureReader& textures, gpu::Material&
 void readSpecularGlossiness(const Value& sg, TextureReader& textures, gpu::Material& m)
 {
     m.base_color = nonNegative(color(sg, "diffuseFactor", {1, 1, 1}));
-    if (const Value& diffuse = sg.Get("diffuseFactor"); diffuse.IsArray() && diffuse.ArrayLen() == 4 && diffuse.Get(3).IsNumber())
+    if (const Value& diffuse = sg.Get("diffuseFactor");
+        diffuse.IsArray() && diffuse.ArrayLen() == 4 && diffuse.Get(3).IsNumber())
         m.alpha = unitRange(diffuse.Get(3).GetNumberAsDouble());
     m.metallic = 0;
     m.roughness = 1 - unitRange(number(sg, "glossinessFactor", 1));
@@ -310,7 +324,8 @@ Status importMaterials(const GltfFile& file, std::span<const int> used, SceneDat
         const bool is_default = index < 0;
         if (!is_default && size_t(index) >= file.model.materials.size())
             return Error{ExitCode::kInvalid, fmt::format("a mesh names material {}, which does not exist", index)};
-        scene.materials.push_back(is_default ? defaultMaterial() : readMaterial(file.model.materials[size_t(index)], textures));
+        scene.materials.push_back(is_default ? defaultMaterial()
+                                             : readMaterial(file.model.materials[size_t(index)], textures));
         if (const Status status = textures.status(); !status)
             return Error{status.error().code, fmt::format("{} (/materials/{})", status.error().message, index)};
         if (is_default)
@@ -326,7 +341,8 @@ Status importMaterials(const GltfFile& file, std::span<const int> used, SceneDat
     if (textures.unsupportedTexCoord())
         scene.warnings.push_back("some textures use a coordinate set above TEXCOORD_1; they are drawn with TEXCOORD_0");
     if (lost_glossiness)
-        scene.warnings.push_back("glossiness textures (KHR_materials_pbrSpecularGlossiness) are left out: only the factor is used");
+        scene.warnings.push_back(
+            "glossiness textures (KHR_materials_pbrSpecularGlossiness) are left out: only the factor is used");
     return Success{};
 }
 

@@ -20,7 +20,8 @@ public:
     {
     }
 
-    Result<FloatArray> read(const char* name, uint32_t min_components, uint32_t max_components, size_t vertex_count) const
+    Result<FloatArray> read(const char* name, uint32_t min_components, uint32_t max_components,
+                            size_t vertex_count) const
     {
         const auto attribute = primitive_.attributes.find(name);
         if (attribute == primitive_.attributes.end())
@@ -69,7 +70,8 @@ std::vector<gpu::uvec3> assemble(const std::vector<uint32_t>& v, int mode)
     std::vector<gpu::uvec3> triangles;
     if (mode == TINYGLTF_MODE_TRIANGLE_STRIP)
         for (size_t i = 2; i < v.size(); ++i)
-            triangles.push_back(i % 2 == 0 ? gpu::uvec3{v[i - 2], v[i - 1], v[i]} : gpu::uvec3{v[i - 1], v[i - 2], v[i]});
+            triangles.push_back(i % 2 == 0 ? gpu::uvec3{v[i - 2], v[i - 1], v[i]}
+                                           : gpu::uvec3{v[i - 1], v[i - 2], v[i]});
     else if (mode == TINYGLTF_MODE_TRIANGLE_FAN)
         for (size_t i = 2; i < v.size(); ++i)
             triangles.push_back({v[0], v[i - 1], v[i]});
@@ -93,8 +95,9 @@ Result<std::vector<uint32_t>> vertexIndices(const tinygltf::Model& model, const 
         return indices.error();
     if (const auto largest = std::max_element(indices->begin(), indices->end());
         largest != indices->end() && *largest >= vertex_count)
-        return Error{ExitCode::kInvalid, fmt::format("vertex index {} is out of range: there are {} vertices (/accessors/{})",
-                                                     *largest, vertex_count, primitive.indices)};
+        return Error{ExitCode::kInvalid,
+                     fmt::format("vertex index {} is out of range: there are {} vertices (/accessors/{})", *largest,
+                                 vertex_count, primitive.indices)};
     return indices;
 }
 } // namespace

@@ -8,7 +8,10 @@
 
 namespace
 {
-Error invalid(std::string_view text, size_t node) { return {ExitCode::kInvalid, fmt::format("{} (/nodes/{})", text, node)}; }
+Error invalid(std::string_view text, size_t node)
+{
+    return {ExitCode::kInvalid, fmt::format("{} (/nodes/{})", text, node)};
+}
 
 /// Column-major rotation matrix of a quaternion, normalised.
 std::array<double, 9> rotationMatrix(double x, double y, double z, double w)
@@ -17,9 +20,9 @@ std::array<double, 9> rotationMatrix(double x, double y, double z, double w)
     if (!(l > 0))
         return {1, 0, 0, 0, 1, 0, 0, 0, 1};
     x /= l, y /= l, z /= l, w /= l;
-    return {1 - 2 * (y * y + z * z), 2 * (x * y + z * w), 2 * (x * z - y * w),
-            2 * (x * y - z * w), 1 - 2 * (x * x + z * z), 2 * (y * z + x * w),
-            2 * (x * z + y * w), 2 * (y * z - x * w), 1 - 2 * (x * x + y * y)};
+    return {1 - 2 * (y * y + z * z), 2 * (x * y + z * w),     2 * (x * z - y * w),
+            2 * (x * y - z * w),     1 - 2 * (x * x + z * z), 2 * (y * z + x * w),
+            2 * (x * z + y * w),     2 * (y * z - x * w),     1 - 2 * (x * x + y * y)};
 }
 
 Transform fromTrs(const std::array<double, 3>& t, const std::array<double, 4>& r, const std::array<double, 3>& s)
@@ -64,7 +67,8 @@ Result<Transform> localTransform(const tinygltf::Node& node, size_t index)
 }
 
 /// Local transforms of EXT_mesh_gpu_instancing, or the identity alone.
-Result<std::vector<Transform>> instanceTransforms(const tinygltf::Model& model, const tinygltf::Node& node, size_t index)
+Result<std::vector<Transform>> instanceTransforms(const tinygltf::Model& model, const tinygltf::Node& node,
+                                                  size_t index)
 {
     const auto extension = node.extensions.find("EXT_mesh_gpu_instancing");
     if (extension == node.extensions.end())
@@ -102,8 +106,9 @@ Result<std::vector<Transform>> instanceTransforms(const tinygltf::Model& model, 
 
 Result<PunctualLight> makeLight(const tinygltf::Light& from, const Transform& to_world, int index)
 {
-    const auto bad = [&](std::string_view text)
-    { return Error{ExitCode::kInvalid, fmt::format("{} (/extensions/KHR_lights_punctual/lights/{})", text, index)}; };
+    const auto bad = [&](std::string_view text) {
+        return Error{ExitCode::kInvalid, fmt::format("{} (/extensions/KHR_lights_punctual/lights/{})", text, index)};
+    };
     PunctualLight light;
     if (from.type == "point")
         light.kind = gpu::kLightPoint;
@@ -116,7 +121,8 @@ Result<PunctualLight> makeLight(const tinygltf::Light& from, const Transform& to
     light.position = to_world.point({0, 0, 0});
     light.direction = normalizeOr(to_world.vector({0, 0, -1}), {0, 0, -1});
     const bool colored = from.color.size() == 3;
-    const auto channel = [&](size_t i) { return float(std::max((colored ? from.color[i] : 1.0) * from.intensity, 0.0)); };
+    const auto channel = [&](size_t i)
+    { return float(std::max((colored ? from.color[i] : 1.0) * from.intensity, 0.0)); };
     light.intensity = {channel(0), channel(1), channel(2)};
     if (!isFinite(light.intensity))
         return bad("a light's intensity is not finite");
@@ -130,7 +136,8 @@ Result<PunctualLight> makeLight(const tinygltf::Light& from, const Transform& to
     return light;
 }
 
-Result<CameraView> makeCamera(const tinygltf::Camera& from, const tinygltf::Node& node, const Transform& to_world, int index)
+Result<CameraView> makeCamera(const tinygltf::Camera& from, const tinygltf::Node& node, const Transform& to_world,
+                              int index)
 {
     CameraView view;
     view.name = !node.name.empty() ? node.name : !from.name.empty() ? from.name : fmt::format("camera {}", index);
@@ -142,8 +149,9 @@ Result<CameraView> makeCamera(const tinygltf::Camera& from, const tinygltf::Node
         view.orthographic_height = float(2 * from.orthographic.ymag);
     else
         view.vertical_fov = float(from.perspective.yfov);
-    const bool good = from.type == "orthographic" ? view.orthographic_height > 0 && std::isfinite(view.orthographic_height)
-                                                  : view.vertical_fov > 0 && view.vertical_fov < 3.1415f;
+    const bool good = from.type == "orthographic"
+                          ? view.orthographic_height > 0 && std::isfinite(view.orthographic_height)
+                          : view.vertical_fov > 0 && view.vertical_fov < 3.1415f;
     if (!good)
         return Error{ExitCode::kInvalid, fmt::format("a camera has no usable field of view (/cameras/{})", index)};
     return view;
@@ -269,6 +277,7 @@ Result<SceneNodes> walkScene(const tinygltf::Model& model)
         return Error{ExitCode::kInvalid, fmt::format("scene {} does not exist (/scene)", scene)};
     Result<SceneNodes> nodes = Walk(model).run(model.scenes[size_t(scene)].nodes);
     if (nodes && model.defaultScene == -1 && model.scenes.size() > 1)
-        nodes->warnings.push_back(fmt::format("the file names no default scene; the first of {} is compiled", model.scenes.size()));
+        nodes->warnings.push_back(
+            fmt::format("the file names no default scene; the first of {} is compiled", model.scenes.size()));
     return nodes;
 }

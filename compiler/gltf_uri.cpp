@@ -42,7 +42,12 @@ Result<std::vector<unsigned char>> decodeBase64(std::string_view text)
 std::string decodePercent(std::string_view text)
 {
     const auto hex = [](char c)
-    { return c >= '0' && c <= '9' ? c - '0' : c >= 'a' && c <= 'f' ? c - 'a' + 10 : c >= 'A' && c <= 'F' ? c - 'A' + 10 : -1; };
+    {
+        return c >= '0' && c <= '9'   ? c - '0'
+               : c >= 'a' && c <= 'f' ? c - 'a' + 10
+               : c >= 'A' && c <= 'F' ? c - 'A' + 10
+                                      : -1;
+    };
     std::string out;
     for (size_t i = 0; i < text.size(); ++i)
     {

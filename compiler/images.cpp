@@ -6,13 +6,16 @@
 #include <stb_image.h>
 #include <webp/decode.h>
 
-#include <cstring>
+#include <algorithm>
+#include <atomic>
+#include <cstdint>
 #include <memory>
 #include <optional>
 
 namespace
 {
-constexpr uint32_t kMaxSide = 16384; // texels
+constexpr uint32_t kMaxSide = 16384;               // texels
+constexpr uint64_t kMaxTexels = uint64_t(1) << 30; // of all images together: 4 GiB, and as much again for pages
 using Bytes = std::vector<unsigned char>;
 
 Error undecodable(const GltfImage& image, std::string_view reason)
@@ -31,57 +34,72 @@ Result<ByteView> imageBytes(const GltfFile& file, const GltfImage& image, Bytes&
     return ByteView{storage.data(), storage.size(), 0};
 }
 
-Status decodeWebp(const ByteView& bytes, const GltfImage& image, TextureImage& out)
+/// Sizes `out` if the sides are sane and all images together stay within bounds; before any texel is decoded.
+Status reserve(int width, int height, const GltfImage& image, std::atomic<uint64_t>& texels, TextureImage& out)
+{
+    if (width <= 0 || height <= 0 || uint32_t(std::max(width, height)) > kMaxSide)
+        return undecodable(image, fmt::format("its sides must be 1 to {} texels", kMaxSide));
+    if (texels.fetch_add(uint64_t(width) * uint64_t(height)) + uint64_t(width) * uint64_t(height) > kMaxTexels)
+        return Error{ExitCode::kUnsupported,
+                     fmt::format("its textures have more than {} texels together; make them smaller", kMaxTexels)};
+    out.width = uint32_t(width);
+    out.height = uint32_t(height);
+    return Success{};
+}
+
+Status decodeWebp(const ByteView& bytes, const GltfImage& image, std::atomic<uint64_t>& texels, TextureImage& out)
 {
     WebPBitstreamFeatures features;
     if (WebPGetFeatures(bytes.data, bytes.bytes, &features) != VP8_STATUS_OK || features.has_animation != 0)
         return undecodable(image, "it is no valid WebP still picture");
-    if (features.width <= 0 || features.height <= 0 || uint32_t(std::max(features.width, features.height)) > kMaxSide)
-        return undecodable(image, fmt::format("its sides must be 1 to {} texels", kMaxSide));
-    out.width = uint32_t(features.width);
-    out.height = uint32_t(features.height);
+    if (Status status = reserve(features.width, features.height, image, texels, out); !status)
+        return status;
     out.texels.resize(size_t(4) * out.width * out.height);
-    if (WebPDecodeRGBAInto(bytes.data, bytes.bytes, out.texels.data(), out.texels.size(), int(out.width * 4)) == nullptr)
+    if (WebPDecodeRGBAInto(bytes.data, bytes.bytes, out.texels.data(), out.texels.size(), int(out.width * 4)) ==
+        nullptr)
         return undecodable(image, "its WebP data is damaged");
     return Success{};
 }
 
-Status decodePngOrJpeg(const ByteView& bytes, const GltfImage& image, TextureImage& out)
+Status decodePngOrJpeg(const ByteView& bytes, const GltfImage& image, std::atomic<uint64_t>& texels, TextureImage& out)
 {
     if (bytes.bytes > size_t(INT32_MAX))
         return undecodable(image, "it is larger than 2 GiB");
     int width = 0;
     int height = 0;
     int channels = 0;
-    const std::unique_ptr<stbi_uc, decltype(&stbi_image_free)> texels(
-        stbi_load_from_memory(bytes.data, int(bytes.bytes), &width, &height, &channels, 4), &stbi_image_free);
-    if (texels == nullptr)
+    if (stbi_info_from_memory(bytes.data, int(bytes.bytes), &width, &height, &channels) == 0)
         return undecodable(image, stbi_failure_reason());
-    if (width <= 0 || height <= 0)
-        return undecodable(image, "it has no texels");
-    out.width = uint32_t(width);
-    out.height = uint32_t(height);
-    out.texels.assign(texels.get(), texels.get() + size_t(4) * out.width * out.height);
+    if (Status status = reserve(width, height, image, texels, out); !status)
+        return status;
+    const std::unique_ptr<stbi_uc, decltype(&stbi_image_free)> decoded(
+        stbi_load_from_memory(bytes.data, int(bytes.bytes), &width, &height, &channels, 4), &stbi_image_free);
+    if (decoded == nullptr)
+        return undecodable(image, stbi_failure_reason());
+    out.texels.assign(decoded.get(), decoded.get() + size_t(4) * out.width * out.height);
     return Success{};
 }
 
-Result<TextureImage> decode(const GltfFile& file, const GltfImage& image)
+Result<TextureImage> decode(const GltfFile& file, const GltfImage& image, std::atomic<uint64_t>& texels)
 {
     Bytes storage;
     const Result<ByteView> bytes = imageBytes(file, image, storage);
     if (!bytes)
-        return Error{bytes.error().code, fmt::format("texture \"{}\": {}", image.name.substr(0, 200), bytes.error().message)};
+        return Error{bytes.error().code,
+                     fmt::format("texture \"{}\": {}", image.name.substr(0, 200), bytes.error().message)};
     const std::string_view start(reinterpret_cast<const char*>(bytes->data), std::min<size_t>(bytes->bytes, 16));
     TextureImage out;
     out.name = image.name;
     if (start.starts_with("\xABKTX 20"))
-        return Error{ExitCode::kUnsupported, fmt::format("texture \"{}\" is a KTX2 file, which is not supported; export it as "
-                                                         "PNG, JPEG or WebP", image.name.substr(0, 200))};
+        return Error{ExitCode::kUnsupported,
+                     fmt::format("texture \"{}\" is a KTX2 file, which is not supported; export it as "
+                                 "PNG, JPEG or WebP",
+                                 image.name.substr(0, 200))};
     const bool webp = start.size() >= 12 && start.starts_with("RIFF") && start.substr(8, 4) == "WEBP";
     const bool png_or_jpeg = start.starts_with("\x89PNG") || start.starts_with("\xFF\xD8");
     if (!webp && !png_or_jpeg)
         return undecodable(image, "it is neither PNG, JPEG nor WebP");
-    const Status status = webp ? decodeWebp(*bytes, image, out) : decodePngOrJpeg(*bytes, image, out);
+    const Status status = webp ? decodeWebp(*bytes, image, texels, out) : decodePngOrJpeg(*bytes, image, texels, out);
     if (!status)
         return status.error();
     return out;
@@ -91,6 +109,7 @@ Result<TextureImage> decode(const GltfFile& file, const GltfImage& image)
 Result<std::vector<TextureImage>> decodeImages(const GltfFile& file, std::span<const ImageRequest> requests)
 {
     std::vector<std::optional<Result<TextureImage>>> decoded(requests.size());
+    std::atomic<uint64_t> texels{0};
     const auto first_use = [&](size_t i) // an image used as colour and as data is decoded once
     {
         size_t first = 0;
@@ -102,7 +121,7 @@ Result<std::vector<TextureImage>> decodeImages(const GltfFile& file, std::span<c
                 [&](size_t i)
                 {
                     if (first_use(i) == i)
-                        decoded[i] = decode(file, file.images[size_t(requests[i].source)]);
+                        decoded[i] = decode(file, file.images[size_t(requests[i].source)], texels);
                 });
     std::vector<TextureImage> images;
     for (size_t i = 0; i < requests.size(); ++i)

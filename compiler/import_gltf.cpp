@@ -63,8 +63,8 @@ void readGeometry(const tinygltf::Model& model, Job& job)
     Result<std::optional<MeshPrimitive>> read =
         readPrimitive(model, model.meshes[size_t(job.mesh)].primitives[job.primitive]);
     if (!read)
-        job.error = Error{read.error().code, fmt::format("{} (/meshes/{}/primitives/{})", read.error().message, job.mesh,
-                                                         job.primitive)};
+        job.error = Error{read.error().code,
+                          fmt::format("{} (/meshes/{}/primitives/{})", read.error().message, job.mesh, job.primitive)};
     else
         job.result = std::move(*read);
 }
@@ -94,8 +94,9 @@ void noteGaps(const GltfFile& file, const std::vector<Job>& jobs, SceneData& sce
         scene.counts.generated_tangents += job.generated_tangents;
     }
     if (scene.counts.dropped_primitives > 0)
-        scene.warnings.push_back(fmt::format("{} primitives without a surface (points, lines, no positions) are left out",
-                                             scene.counts.dropped_primitives));
+        scene.warnings.push_back(
+            fmt::format("{} primitives without a surface (points, lines, no positions) are left out",
+                        scene.counts.dropped_primitives));
     if (morphs)
         scene.warnings.push_back("morph targets are left out: meshes are compiled in their base shape");
 }
@@ -129,7 +130,8 @@ Result<ImportedScene> importScene(const GltfFile& file)
     std::map<int, ImportedInstance> by_mesh;
     for (Job& job : jobs)
     {
-        ImportedInstance& range = by_mesh.try_emplace(job.mesh, ImportedInstance{imported.primitives.size(), 0, {}}).first->second;
+        ImportedInstance& range =
+            by_mesh.try_emplace(job.mesh, ImportedInstance{imported.primitives.size(), 0, {}}).first->second;
         if (!job.result)
             continue;
         ++range.primitive_count;
@@ -137,6 +139,7 @@ Result<ImportedScene> importScene(const GltfFile& file)
     }
     for (const MeshInstance& instance : nodes->meshes)
         if (const auto range = by_mesh.find(instance.mesh); range != by_mesh.end())
-            imported.instances.push_back({range->second.first_primitive, range->second.primitive_count, instance.to_world});
+            imported.instances.push_back(
+                {range->second.first_primitive, range->second.primitive_count, instance.to_world});
     return imported;
 }

@@ -15,10 +15,10 @@ struct ImportedInstance
 
 struct ImportedScene
 {
-    SceneData scene;                        // without mesh and images
-    std::vector<MeshPrimitive> primitives;  // complete with normals; with tangents where a normal map needs them
+    SceneData scene;                         // without mesh and images
+    std::vector<MeshPrimitive> primitives;   // complete with normals; with tangents where a normal map needs them
     std::vector<ImportedInstance> instances; // one object each
-    std::vector<ImageRequest> images;       // what SceneData::images is to hold
+    std::vector<ImageRequest> images;        // what SceneData::images is to hold
 };
 
 /// Reads geometry, materials, lights and cameras of the file's default scene.

@@ -5,7 +5,10 @@
 #include <array>
 #include <cmath>
 
-inline bool isFinite(gpu::vec3 a) { return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z); }
+inline bool isFinite(gpu::vec3 a)
+{
+    return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z);
+}
 
 /// `a` at unit length, or `fallback` where it has none (zero, NaN, infinite).
 inline gpu::vec3 normalizeOr(gpu::vec3 a, gpu::vec3 fallback)
@@ -52,12 +55,12 @@ struct Transform
     {
         const auto& m = linear;
         const double sign = determinant() < 0 ? -1 : 1;
-        const double x = (m[4] * m[8] - m[5] * m[7]) * n.x + (m[2] * m[7] - m[1] * m[8]) * n.y +
-                         (m[1] * m[5] - m[2] * m[4]) * n.z;
-        const double y = (m[5] * m[6] - m[3] * m[8]) * n.x + (m[0] * m[8] - m[2] * m[6]) * n.y +
-                         (m[2] * m[3] - m[0] * m[5]) * n.z;
-        const double z = (m[3] * m[7] - m[4] * m[6]) * n.x + (m[1] * m[6] - m[0] * m[7]) * n.y +
-                         (m[0] * m[4] - m[1] * m[3]) * n.z;
+        const double x =
+            (m[4] * m[8] - m[5] * m[7]) * n.x + (m[2] * m[7] - m[1] * m[8]) * n.y + (m[1] * m[5] - m[2] * m[4]) * n.z;
+        const double y =
+            (m[5] * m[6] - m[3] * m[8]) * n.x + (m[0] * m[8] - m[2] * m[6]) * n.y + (m[2] * m[3] - m[0] * m[5]) * n.z;
+        const double z =
+            (m[3] * m[7] - m[4] * m[6]) * n.x + (m[1] * m[6] - m[0] * m[7]) * n.y + (m[0] * m[4] - m[1] * m[3]) * n.z;
         const double l = std::sqrt(x * x + y * y + z * z) * sign;
         return l == 0 ? gpu::vec3{0, 0, 0} : gpu::vec3{float(x / l), float(y / l), float(z / l)};
     }

@@ -37,8 +37,9 @@ void declare(CLI::App& app, Arguments& a)
     app.add_option("-o,--output", a.output, "Package to write (default: the scene's name with .lumi)");
     app.add_option("--env", a.environment, "Environment: equirectangular .exr or .hdr, W/(m^2 sr)");
     app.add_option("--sun", a.sun, "Sun: DX,DY,DZ,LUX; the direction is the way its light travels");
-    app.add_option("--view", a.views,
-                   "Camera: NAME=EX,EY,EZ,TX,TY,TZ,YFOV; eye, target (metres), vertical field of view (degrees). Repeatable")
+    app.add_option(
+           "--view", a.views,
+           "Camera: NAME=EX,EY,EZ,TX,TY,TZ,YFOV; eye, target (metres), vertical field of view (degrees). Repeatable")
         ->take_all();
     app.add_flag("--no-default-light", a.no_default_light, "Leave a scene without any light dark");
     app.add_option("--report", a.report, "Write what was made as JSON");
@@ -58,7 +59,8 @@ Result<int> parseCompression(const std::string& text)
     const std::string_view digits = text.starts_with("zstd:") ? std::string_view(text).substr(5) : "";
     const auto [end, failure] = std::from_chars(digits.data(), digits.data() + digits.size(), level);
     if (failure != std::errc() || end != digits.data() + digits.size() || level < 1 || level > 19)
-        return Error{ExitCode::kUsage, fmt::format("--compress \"{}\" is not none, zstd or zstd:LEVEL with a level of 1 to 19", text)};
+        return Error{ExitCode::kUsage,
+                     fmt::format("--compress \"{}\" is not none, zstd or zstd:LEVEL with a level of 1 to 19", text)};
     return level;
 }
 
@@ -99,7 +101,8 @@ Result<CompileOptions> toOptions(const Arguments& a)
 {
     CompileOptions options;
     options.input = a.input;
-    options.output = a.output.empty() ? std::filesystem::path(a.input).replace_extension(".lumi") : std::filesystem::path(a.output);
+    options.output =
+        a.output.empty() ? std::filesystem::path(a.input).replace_extension(".lumi") : std::filesystem::path(a.output);
     options.default_light = !a.no_default_light;
     options.text = provenance(a);
     if (!a.environment.empty())
@@ -153,6 +156,9 @@ int main(int argc, char** argv)
     const Result<CompileOptions> options = toOptions(arguments);
     if (!options)
         return fail("lumicut-compile", options.error());
+    if (!arguments.report.empty())
+        if (const Status status = checkWritable(arguments.report); !status)
+            return fail(arguments.report, status.error());
     const Result<CompileReport> report = compile(*options);
     if (!report)
         return fail(arguments.input, report.error());

@@ -16,7 +16,8 @@ namespace
 struct SurfaceTraits : OpenMesh::DefaultTraits
 {
     FaceAttributes(OpenMesh::Attributes::Normal | OpenMesh::Attributes::Status);
-    HalfedgeAttributes(OpenMesh::Attributes::Normal | OpenMesh::Attributes::PrevHalfedge | OpenMesh::Attributes::Status);
+    HalfedgeAttributes(OpenMesh::Attributes::Normal | OpenMesh::Attributes::PrevHalfedge |
+                       OpenMesh::Attributes::Status);
     EdgeAttributes(OpenMesh::Attributes::Status);
     VertexAttributes(OpenMesh::Attributes::Status);
 };
@@ -36,7 +37,8 @@ struct KeyHash
 
 PositionKey positionKey(gpu::vec3 p) // adding 0 turns -0 into 0
 {
-    return {std::bit_cast<uint32_t>(p.x + 0.0f), std::bit_cast<uint32_t>(p.y + 0.0f), std::bit_cast<uint32_t>(p.z + 0.0f)};
+    return {std::bit_cast<uint32_t>(p.x + 0.0f), std::bit_cast<uint32_t>(p.y + 0.0f),
+            std::bit_cast<uint32_t>(p.z + 0.0f)};
 }
 
 /// Appends a copy of vertex `v` of every array but the normals.
@@ -59,7 +61,8 @@ uint32_t duplicateVertex(MeshPrimitive& mesh, uint32_t v)
 /// @param faces [triangle_count] the face of each triangle; invalid where the triangle is degenerate
 Surface weldedSurface(const MeshPrimitive& mesh, std::vector<Surface::FaceHandle>& faces)
 {
-    [[maybe_unused]] static const bool quiet = (omerr().disable(), true); // it prints a line for every non-manifold edge
+    [[maybe_unused]] static const bool quiet =
+        (omerr().disable(), true); // it prints a line for every non-manifold edge
     Surface surface;
     std::unordered_map<PositionKey, Surface::VertexHandle, KeyHash> welded;
     std::vector<Surface::VertexHandle> vertices(mesh.positions.size());
@@ -84,7 +87,8 @@ Surface weldedSurface(const MeshPrimitive& mesh, std::vector<Surface::FaceHandle
         if (!face.is_valid())
         {
             const std::array<Surface::Point, 3> corner{surface.point(a), surface.point(b), surface.point(c)}; // copies
-            face = surface.add_face(surface.add_vertex(corner[0]), surface.add_vertex(corner[1]), surface.add_vertex(corner[2]));
+            face = surface.add_face(surface.add_vertex(corner[0]), surface.add_vertex(corner[1]),
+                                    surface.add_vertex(corner[2]));
         }
         faces.push_back(face);
     }
@@ -108,7 +112,8 @@ TriangleTangent triangleTangent(const MeshPrimitive& mesh, gpu::uvec3 t, const s
     const gpu::vec3 along_u = normalizeOr((e1 * dv2 - e2 * dv1) * (det < 0 ? -1.0f : 1.0f), {});
     if (!(std::fabs(det) > 0) || dot(along_u, along_u) == 0)
         return {};
-    // cross(normal, tangent) * w must point up in the image, towards -v: a quad with u to its right and v down has w = 1.
+    // cross(normal, tangent) * w must point up in the image, towards -v: a quad with u to its right and v down has w
+    // = 1.
     return {along_u * length(cross(e1, e2)), det < 0 ? 1.0f : -1.0f};
 }
 } // namespace
@@ -177,7 +182,8 @@ uint64_t generateTangents(MeshPrimitive& mesh, const TextureUse& normal_map)
     const std::vector<gpu::vec2>& source = (normal_map.sampling & gpu::kSampleUv1) != 0 ? mesh.uv1 : mesh.uv0;
     std::vector<gpu::vec2> uv(mesh.positions.size());
     for (size_t i = 0; i < source.size(); ++i)
-        uv[i] = {dot(normal_map.u_row, {source[i].x, source[i].y, 1}), dot(normal_map.v_row, {source[i].x, source[i].y, 1})};
+        uv[i] = {dot(normal_map.u_row, {source[i].x, source[i].y, 1}),
+                 dot(normal_map.v_row, {source[i].x, source[i].y, 1})};
 
     const size_t source_count = mesh.positions.size();
     std::vector<gpu::vec3> sums(source_count, gpu::vec3{});

@@ -7,11 +7,11 @@
 struct MeshPrimitive
 {
     std::vector<gpu::vec3> positions;
-    std::vector<gpu::vec3> normals;  // empty or one per vertex
-    std::vector<gpu::vec4> tangents; // empty or one per vertex; w: sign of the bitangent
-    std::vector<gpu::vec2> uv0;      // empty or one per vertex
-    std::vector<gpu::vec2> uv1;      // empty or one per vertex
-    std::vector<gpu::vec4> colors;   // empty or one per vertex, linear
+    std::vector<gpu::vec3> normals;    // empty or one per vertex
+    std::vector<gpu::vec4> tangents;   // empty or one per vertex; w: sign of the bitangent
+    std::vector<gpu::vec2> uv0;        // empty or one per vertex
+    std::vector<gpu::vec2> uv1;        // empty or one per vertex
+    std::vector<gpu::vec4> colors;     // empty or one per vertex, linear
     std::vector<gpu::uvec3> triangles; // vertex indices, all in range
     uint32_t material = 0;             // index into SceneData::materials
 };

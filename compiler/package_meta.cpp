@@ -8,7 +8,10 @@ namespace
 {
 using namespace lumicut;
 
-std::unique_ptr<fb::Vec3> box(gpu::vec3 v) { return std::make_unique<fb::Vec3>(v.x, v.y, v.z); }
+std::unique_ptr<fb::Vec3> box(gpu::vec3 v)
+{
+    return std::make_unique<fb::Vec3>(v.x, v.y, v.z);
+}
 
 std::unique_ptr<fb::StatisticsT> statistics(const SceneData& scene, const Bvh& bvh, const LightTables& lights)
 {

@@ -30,8 +30,8 @@ std::string summaryText(const CompileReport& report, const CompileOptions& optio
     std::string text;
     auto out = std::back_inserter(text);
     fmt::format_to(out, "{}\n", options.output.string());
-    fmt::format_to(out, "  triangles  {} ({} degenerate and {} duplicate removed)\n", s.triangles, s.degenerate_triangles,
-                   s.duplicate_triangles);
+    fmt::format_to(out, "  triangles  {} ({} degenerate and {} duplicate removed)\n", s.triangles,
+                   s.degenerate_triangles, s.duplicate_triangles);
     fmt::format_to(out, "  vertices   {} ({} normals and {} tangents made)\n", s.vertices, s.generated_normals,
                    report.generated_tangents);
     fmt::format_to(out, "  lights     {} point, {} spot, {} directional, {} emissive triangles, {}; {:.4g} W\n",
@@ -43,10 +43,10 @@ std::string summaryText(const CompileReport& report, const CompileOptions& optio
     fmt::format_to(out, "  cameras    {}:", report.meta.cameras.size());
     for (const auto& camera : report.meta.cameras)
         fmt::format_to(out, " \"{}\"", camera->name);
-    fmt::format_to(out, "\n  materials  {}\n  textures   {} images in {} pages\n", report.meta.material_names.size(), report.images,
-                   report.meta.texture_pages.size());
-    fmt::format_to(out, "  BVH        {} nodes, {} triangles, SAH cost {:.2f}, depth {}, stack {}\n", s.bvh_nodes, s.bvh_triangles,
-                   s.bvh_sah_cost, s.bvh_depth, s.traversal_stack);
+    fmt::format_to(out, "\n  materials  {}\n  textures   {} images in {} pages\n", report.meta.material_names.size(),
+                   report.images, report.meta.texture_pages.size());
+    fmt::format_to(out, "  BVH        {} nodes, {} triangles, SAH cost {:.2f}, depth {}, stack {}\n", s.bvh_nodes,
+                   s.bvh_triangles, s.bvh_sah_cost, s.bvh_depth, s.traversal_stack);
     fmt::format_to(out, "  bytes      {}:", storedBytes(report));
     for (const package::WrittenChunk& chunk : report.chunks)
         fmt::format_to(out, " {} {}", chunkLabel(chunk), chunk.stored_bytes);
@@ -73,9 +73,12 @@ std::string reportJson(const CompileReport& report, const CompileOptions& option
     json["generated_normals"] = s.generated_normals;
     json["generated_tangents"] = report.generated_tangents;
     json["dropped_primitives"] = report.dropped_primitives;
-    json["lights"] = {{"point", report.point_lights}, {"spot", report.spot_lights},
-                      {"directional", report.directional_lights}, {"emissive_triangles", s.emissive_triangles},
-                      {"environment", report.meta.environment != nullptr}, {"total_power_w", s.total_light_power}};
+    json["lights"] = {{"point", report.point_lights},
+                      {"spot", report.spot_lights},
+                      {"directional", report.directional_lights},
+                      {"emissive_triangles", s.emissive_triangles},
+                      {"environment", report.meta.environment != nullptr},
+                      {"total_power_w", s.total_light_power}};
     json["cameras"] = ordered_json::array();
     for (const auto& camera : report.meta.cameras)
         json["cameras"].push_back(camera->name);
@@ -83,15 +86,22 @@ std::string reportJson(const CompileReport& report, const CompileOptions& option
     json["images"] = report.images;
     json["texture_pages"] = ordered_json::array();
     for (const auto& page : report.meta.texture_pages)
-        json["texture_pages"].push_back(
-            {{"srgb", page->encoding == lumicut::fb::TextureEncoding::Rgba8Srgb}, {"width", page->width},
-             {"height", page->height}, {"layers", page->layers}, {"levels", page->levels}});
-    json["bvh"] = {{"nodes", s.bvh_nodes}, {"triangles", s.bvh_triangles}, {"sah_cost", s.bvh_sah_cost},
-                   {"depth", s.bvh_depth}, {"traversal_stack", s.traversal_stack}};
+        json["texture_pages"].push_back({{"srgb", page->encoding == lumicut::fb::TextureEncoding::Rgba8Srgb},
+                                         {"width", page->width},
+                                         {"height", page->height},
+                                         {"layers", page->layers},
+                                         {"levels", page->levels}});
+    json["bvh"] = {{"nodes", s.bvh_nodes},
+                   {"triangles", s.bvh_triangles},
+                   {"sah_cost", s.bvh_sah_cost},
+                   {"depth", s.bvh_depth},
+                   {"traversal_stack", s.traversal_stack}};
     json["chunks"] = ordered_json::array();
     for (const package::WrittenChunk& chunk : report.chunks)
-        json["chunks"].push_back({{"id", package::chunkName(chunk.id)}, {"index", chunk.index},
-                                  {"stored_bytes", chunk.stored_bytes}, {"raw_bytes", chunk.raw_bytes}});
+        json["chunks"].push_back({{"id", package::chunkName(chunk.id)},
+                                  {"index", chunk.index},
+                                  {"stored_bytes", chunk.stored_bytes},
+                                  {"raw_bytes", chunk.raw_bytes}});
     json["stages"] = ordered_json::array();
     for (const StageTime& stage : report.stages)
         json["stages"].push_back({{"name", stage.name}, {"seconds", stage.seconds}});

@@ -60,15 +60,19 @@ uint32_t levelCount(uint32_t width, uint32_t height)
     return levels;
 }
 
-uint32_t half(uint32_t side) { return std::max(side / 2, 1u); }
+uint32_t half(uint32_t side)
+{
+    return std::max(side / 2, 1u);
+}
 
 /// Bilinear resampling, in linear light for sRGB images. Only for images that must join another page.
 std::vector<uint8_t> resample(const TextureImage& image, uint32_t width, uint32_t height)
 {
     const SrgbTables& tables = srgbTables();
     std::vector<uint8_t> out(size_t(4) * width * height);
-    const auto tap = [](uint32_t i, uint32_t count, uint32_t source_count)
-    { return std::clamp((float(i) + 0.5f) * float(source_count) / float(count) - 0.5f, 0.0f, float(source_count - 1)); };
+    const auto tap = [](uint32_t i, uint32_t count, uint32_t source_count) {
+        return std::clamp((float(i) + 0.5f) * float(source_count) / float(count) - 0.5f, 0.0f, float(source_count - 1));
+    };
     for (uint32_t y = 0; y < height; ++y)
         for (uint32_t x = 0; x < width; ++x)
         {
@@ -100,7 +104,8 @@ Groups::iterator joinTarget(Groups& groups, const PageKey& key)
     const auto cost = [&](const PageKey& k) // larger pages first by size, smaller ones only where there is none
     { return k.texels() >= key.texels() ? k.texels() : (uint64_t(1) << 40) - k.texels(); };
     for (auto it = groups.begin(); it != groups.end(); ++it)
-        if (it->first.srgb == key.srgb && it->first != key && (best == groups.end() || cost(it->first) < cost(best->first)))
+        if (it->first.srgb == key.srgb && it->first != key &&
+            (best == groups.end() || cost(it->first) < cost(best->first)))
             best = it;
     return best;
 }
@@ -113,7 +118,8 @@ void limitGroups(Groups& groups)
     {
         auto smallest = groups.end();
         for (auto it = groups.begin(); it != groups.end(); ++it)
-            if (joinTarget(groups, it->first) != groups.end() && (smallest == groups.end() || memory(*it) < memory(*smallest)))
+            if (joinTarget(groups, it->first) != groups.end() &&
+                (smallest == groups.end() || memory(*it) < memory(*smallest)))
                 smallest = it;
         check(smallest != groups.end(), "{} groups", groups.size());
         std::vector<uint32_t>& into = joinTarget(groups, smallest->first)->second;

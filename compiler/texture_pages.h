@@ -18,9 +18,9 @@ struct TexturePage
 
 struct TexturePages
 {
-    std::vector<TexturePage> pages;      // at most gpu::kTexturePageCount
-    std::vector<gpu::TextureRef> refs;   // [texture_use_count]
-    uint32_t resized = 0;                // images that had to take another size so that the pages suffice
+    std::vector<TexturePage> pages;    // at most gpu::kTexturePageCount
+    std::vector<gpu::TextureRef> refs; // [texture_use_count]
+    uint32_t resized = 0;              // images that had to take another size so that the pages suffice
 };
 
 /// Mip levels are 2 x 2 box averages, of linear light for sRGB images. Frees the images' texels as it goes.

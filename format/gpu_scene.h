@@ -167,6 +167,20 @@ struct CausticTarget // bounding sphere of one specular object: where caustic ph
 };
 GPU_SIZE(CausticTarget, 16);
 
+// What a scene has, so that kernels can be built without what it has not (specialization constant 0)
+GPU_CONST uint kFeatureAlpha = 1u;            // triangles with kTriangleAlpha
+GPU_CONST uint kFeatureThin = 2u;             // triangles with kTriangleThin
+GPU_CONST uint kFeatureTransmission = 4u;     // materials that transmit
+GPU_CONST uint kFeaturePunctualLights = 8u;
+GPU_CONST uint kFeatureTriangleLights = 16u;
+GPU_CONST uint kFeatureEnvironment = 32u;
+GPU_CONST uint kFeatureNormalMaps = 64u;
+GPU_CONST uint kFeatureMetallicRoughnessMaps = 128u;
+GPU_CONST uint kFeatureEmissiveMaps = 256u;
+GPU_CONST uint kFeatureRareMaps = 512u;       // transmission, specular, specular colour
+GPU_CONST uint kFeatureMetal = 1024u;         // materials with metallic > 0
+GPU_CONST uint kFeatureSpecular = 2048u;      // materials with any specular reflection or transmission
+
 struct SceneInfo // uniform block: what every kernel may need to know of the scene
 {
     vec3 bounds_min; // metres

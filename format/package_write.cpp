@@ -1,17 +1,14 @@
 #include "format/package_write.h"
 
 #include "format/check.h"
+#include "format/temporary_file.h"
 
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
 #include <xxhash.h>
 #include <zstd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
-#include <memory>
 #include <string>
 
 namespace package
@@ -117,79 +114,13 @@ std::vector<std::byte> headerAndTable(const std::vector<Pending>& pending, uint6
     return bytes;
 }
 
-/// A file that vanishes again unless it is committed to its final name.
-class TemporaryFile
+bool padTo(TemporaryFile& file, uint64_t offset)
 {
-public:
-    explicit TemporaryFile(const std::filesystem::path& target) : target_(target)
-    {
-        for (int attempt = 0; attempt < 100 && fd_ < 0; ++attempt)
-        {
-            path_ = target;
-            path_ += fmt::format(".{}-{}.tmp", getpid(), attempt);
-            fd_ = open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-            if (fd_ < 0 && errno != EEXIST)
-                break;
-        }
-    }
-    TemporaryFile(const TemporaryFile&) = delete;
-    TemporaryFile& operator=(const TemporaryFile&) = delete;
-    ~TemporaryFile()
-    {
-        if (fd_ < 0)
-            return;
-        close(fd_);
-        if (!committed_)
-            unlink(path_.c_str());
-    }
-
-    bool isOpen() const { return fd_ >= 0; }
-
-    bool append(std::span<const std::byte> bytes)
-    {
-        position_ += bytes.size();
-        while (!bytes.empty())
-        {
-            const ssize_t written = ::write(fd_, bytes.data(), bytes.size());
-            if (written < 0 && errno == EINTR)
-                continue;
-            if (written < 0)
-                return false;
-            bytes = bytes.subspan(size_t(written));
-        }
-        return true;
-    }
-
-    bool padTo(uint64_t offset)
-    {
-        static constexpr std::array<std::byte, kBulkAlignment> kZeros{};
-        check(offset >= position_ && offset - position_ <= kZeros.size(), "padding from {} to {}", position_, offset);
-        return append(std::span(kZeros).first(offset - position_));
-    }
-
-    bool commit()
-    {
-        if (fsync(fd_) != 0 || rename(path_.c_str(), target_.c_str()) != 0)
-            return false;
-        committed_ = true;
-        // The name itself survives a power cut only once its folder is on disk; some file systems refuse, harmlessly.
-        const std::filesystem::path folder = target_.has_parent_path() ? target_.parent_path() : ".";
-        const int folder_fd = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-        if (folder_fd >= 0)
-        {
-            fsync(folder_fd);
-            close(folder_fd);
-        }
-        return true;
-    }
-
-private:
-    std::filesystem::path target_;
-    std::filesystem::path path_;
-    int fd_ = -1;
-    uint64_t position_ = 0;
-    bool committed_ = false;
-};
+    static constexpr std::array<std::byte, kBulkAlignment> kZeros{};
+    check(offset >= file.position() && offset - file.position() <= kZeros.size(), "padding from {} to {}",
+          file.position(), offset);
+    return file.append(std::span(kZeros).first(offset - file.position()));
+}
 
 Error ioError(const char* what)
 {
@@ -217,7 +148,7 @@ Result<std::vector<WrittenChunk>> write(const std::filesystem::path& path, std::
               [](const Pending* a, const Pending* b) { return a->entry.offset < b->entry.offset; });
     for (const Pending* p : by_offset)
     {
-        if (!file.padTo(p->entry.offset) || !file.append(p->stored))
+        if (!padTo(file, p->entry.offset) || !file.append(p->stored))
             return ioError("write the output file");
     }
     if (!file.commit())

@@ -26,6 +26,31 @@ gpu::SceneInfo sceneInfo(const package::Package& package)
     }
     return info;
 }
+uint32_t materialFeatures(const gpu::Material& material)
+{
+    const auto if_used = [](uint32_t texture, uint32_t feature) { return texture != gpu::kNone ? feature : 0u; };
+    const bool dielectric_reflects = material.specular > 0 && material.metallic < 1;
+    return (material.transmission > 0 ? gpu::kFeatureTransmission : 0u) | (material.metallic > 0 ? gpu::kFeatureMetal : 0u) |
+           (dielectric_reflects || material.metallic > 0 || material.transmission > 0 ? gpu::kFeatureSpecular : 0u) |
+           if_used(material.normal_texture, gpu::kFeatureNormalMaps) |
+           if_used(material.metallic_roughness_texture, gpu::kFeatureMetallicRoughnessMaps) |
+           if_used(material.emissive_texture, gpu::kFeatureEmissiveMaps) |
+           if_used(material.transmission_texture, gpu::kFeatureRareMaps) |
+           if_used(material.specular_texture, gpu::kFeatureRareMaps) |
+           if_used(material.specular_color_texture, gpu::kFeatureRareMaps);
+}
+
+uint32_t sceneFeatures(const package::Package& package)
+{
+    uint32_t features = (package.meta().has_alpha() ? gpu::kFeatureAlpha : 0u) | (package.meta().has_thin() ? gpu::kFeatureThin : 0u);
+    for (const gpu::Material& material : package.materials())
+        features |= materialFeatures(material);
+    for (const gpu::Light& light : package.lights())
+        features |= light.kind == gpu::kLightEnvironment ? gpu::kFeatureEnvironment
+                    : light.kind >= gpu::kLightTriangle  ? gpu::kFeatureTriangleLights
+                                                         : gpu::kFeaturePunctualLights;
+    return features;
+}
 } // namespace
 
 Result<std::unique_ptr<SceneGpu>> SceneGpu::create(const Device& device, const package::Package& package)
@@ -59,9 +84,7 @@ Result<std::unique_ptr<SceneGpu>> SceneGpu::create(const Device& device, const p
         return *too_large;
     scene->info_ = sceneInfo(package);
     scene->info_buffer_ = device.upload("scene.info", std::span<const gpu::SceneInfo>(&scene->info_, 1));
-    scene->trace_constants_ = {package.meta().has_alpha(), package.meta().has_thin()};
-    scene->has_area_lights_ =
-        std::ranges::any_of(package.lights(), [](const gpu::Light& light) { return light.kind >= gpu::kLightTriangle; });
+    scene->constants_ = {sceneFeatures(package), package.meta().texture_pages()->size()};
     scene->createImages(package);
     scene->createDescriptorSet();
     return scene;

@@ -19,10 +19,10 @@ public:
 
     VkDescriptorSet descriptorSet() const { return set_; }
     const gpu::SceneInfo& info() const { return info_; }
-    /// Specialization constants of kernels that trace: has alpha, has thin walls (lib/bvh.glsl).
-    std::span<const uint32_t> traceConstants() const { return trace_constants_; }
+    /// Specialization constants of every kernel that reads the scene: features, texture pages in use (lib/scene.glsl).
+    std::span<const uint32_t> constants() const { return constants_; }
     /// Some light has an extent, so that a ray may find it: an emissive triangle or an environment.
-    bool hasAreaLights() const { return has_area_lights_; }
+    bool hasAreaLights() const { return (constants_[0] & (gpu::kFeatureTriangleLights | gpu::kFeatureEnvironment)) != 0; }
 
 private:
     explicit SceneGpu(const Device& device) : device_(device) {}
@@ -31,8 +31,7 @@ private:
 
     const Device& device_;
     gpu::SceneInfo info_{};
-    std::array<uint32_t, 2> trace_constants_{};
-    bool has_area_lights_ = false;
+    std::array<uint32_t, 2> constants_{};
     Buffer info_buffer_;
     std::vector<Buffer> buffers_; // by binding, kBvhNodesBinding first
     std::vector<Image> pages_;    // kTexturePageCount of them, unused ones 1 x 1 white

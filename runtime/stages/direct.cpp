@@ -1,8 +1,8 @@
 #include "runtime/stages/direct.h"
 
 DirectStage::DirectStage(const Device& device, const SceneGpu& scene, uint32_t max_pixels)
-    : sample_(device.kernel("direct/sample", scene.traceConstants())),
-      emitted_(device.kernel("direct/emitted", scene.traceConstants())),
+    : sample_(device.kernel("direct/sample", scene.constants())),
+      emitted_(device.kernel("direct/emitted", scene.constants())),
       emitter_queue_(device, "direct.emitter_queue", max_pixels),
       shadow_size_(device.array<gpu::QueueSize>("direct.shadow_size", 1)),
       shadow_rays_(device.array<gpu::ShadowRay>("direct.shadow_rays", max_pixels)),
@@ -29,11 +29,11 @@ void DirectStage::record(Recorder& rec, const RayStage& rays, const Input& in) c
                 {{"Points", in.points}, {"ShadowQueue", shadow_size_}, {"ShadowRays", shadow_rays_},
                  {"EmitterQueue", emitter_queue_.size}, {"Rays", emitter_queue_.rays}, {"EmitterRays", emitter_rays_}});
         rays.close(rec, shadow_size_);
-        rays.visible(rec, shadow_size_, shadow_rays_, in.radiance, traceSeed(in.seed, sample, 0, true));
+        rays.visible(rec, shadow_size_, shadow_rays_, in.radiance);
         if (!has_area_lights_)
             continue;
         rays.close(rec, emitter_queue_.size);
-        rays.closest(rec, emitter_queue_, hits_, traceSeed(in.seed, sample, ~0u, false));
+        rays.closest(rec, emitter_queue_, hits_, traceSeed(in.seed, sample, ~0u));
         rec.runIndirect(emitted_, emitter_queue_.size, 0, NoParams{},
                         {{"EmitterQueue", emitter_queue_.size}, {"Rays", emitter_queue_.rays}, {"Hits", hits_},
                          {"EmitterRays", emitter_rays_}, {"Radiance", in.radiance}});

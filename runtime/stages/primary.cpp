@@ -2,7 +2,7 @@
 
 PrimaryStage::PrimaryStage(const Device& device, const SceneGpu& scene, uint32_t max_pixels)
     : generate_(device.kernel("primary/generate")),
-      chain_(device.kernel("primary/chain", scene.traceConstants())),
+      chain_(device.kernel("primary/chain", scene.constants())),
       queue_(device, "primary.queue", max_pixels),
       next_queue_(device, "primary.next_queue", max_pixels),
       hits_(device.array<gpu::Hit>("primary.hits", max_pixels)),
@@ -27,7 +27,7 @@ PrimaryStage::Output PrimaryStage::record(Recorder& rec, const RayStage& rays, c
                                       .pixel_count = pixel_count,
                                       .first_sample = in.camera.first_sample,
                                       .seed = in.camera.seed};
-        rays.closest(rec, *queue, hits_, traceSeed(in.camera.seed, in.camera.first_sample, depth, false));
+        rays.closest(rec, *queue, hits_, traceSeed(in.camera.seed, in.camera.first_sample, depth));
         rays.reset(rec, next->size);
         rec.runIndirect(chain_, queue->size, 0, params,
                         {{"Queue", queue->size}, {"Rays", queue->rays}, {"Hits", hits_}, {"Points", points_}, {"Radiance", radiance_},

@@ -6,17 +6,17 @@ RayQueue::RayQueue(const Device& device, std::string_view name, uint32_t capacit
 {
 }
 
-uint32_t traceSeed(uint32_t seed, uint32_t sample, uint32_t depth, bool shadow)
+uint32_t traceSeed(uint32_t seed, uint32_t sample, uint32_t depth)
 {
     uint32_t mixed = seed;
-    for (const uint32_t value : {sample, depth, uint32_t(shadow)})
+    for (const uint32_t value : {sample, depth})
         mixed = (mixed ^ value) * 0x9e3779b1u + 0x7f4a7c15u;
     return mixed;
 }
 
 RayStage::RayStage(const Device& device, const SceneGpu& scene)
-    : closest_(device.kernel("rays/closest", scene.traceConstants())),
-      visible_(device.kernel("rays/visible", scene.traceConstants())),
+    : closest_(device.kernel("rays/closest", scene.constants())),
+      visible_(device.kernel("rays/visible", scene.constants())),
       dispatch_size_(device.kernel("rays/dispatch_size")),
       set_size_(device.kernel("rays/set_size"))
 {
@@ -38,8 +38,7 @@ void RayStage::closest(Recorder& rec, const RayQueue& queue, const Buffer& hits,
                     {{"Queue", queue.size}, {"Rays", queue.rays}, {"Hits", hits}});
 }
 
-void RayStage::visible(Recorder& rec, const Buffer& size, const Buffer& shadow_rays, const Buffer& radiance, uint32_t seed) const
+void RayStage::visible(Recorder& rec, const Buffer& size, const Buffer& shadow_rays, const Buffer& radiance) const
 {
-    rec.runIndirect(visible_, size, 0, gpu::RaysParams{.seed = seed},
-                    {{"Queue", size}, {"ShadowRays", shadow_rays}, {"Radiance", radiance}});
+    rec.runIndirect(visible_, size, 0, NoParams{}, {{"Queue", size}, {"ShadowRays", shadow_rays}, {"Radiance", radiance}});
 }

@@ -13,7 +13,7 @@ struct RayQueue
 };
 
 /// Seed of the stochastic alpha decisions of one dispatch: another for every pass over the same pixels.
-uint32_t traceSeed(uint32_t seed, uint32_t sample, uint32_t depth, bool shadow);
+uint32_t traceSeed(uint32_t seed, uint32_t sample, uint32_t depth);
 
 class RayStage
 {
@@ -31,7 +31,7 @@ public:
     void closest(Recorder& rec, const RayQueue& queue, const Buffer& hits, uint32_t seed) const;
     /// radiance[path] grows by every shadow ray that arrives. One ray a path in the queue at most.
     /// @param shadow_rays gpu::ShadowRay[], @param radiance vec3[]
-    void visible(Recorder& rec, const Buffer& size, const Buffer& shadow_rays, const Buffer& radiance, uint32_t seed) const;
+    void visible(Recorder& rec, const Buffer& size, const Buffer& shadow_rays, const Buffer& radiance) const;
 
 private:
     Kernel closest_, visible_, dispatch_size_, set_size_;

@@ -2,7 +2,7 @@
 
 ReferenceStage::ReferenceStage(const Device& device, const SceneGpu& scene, uint32_t max_pixels, uint32_t max_batch)
     : generate_(device.kernel("primary/generate")),
-      shade_(device.kernel("reference/shade", scene.traceConstants())),
+      shade_(device.kernel("reference/shade", scene.constants())),
       queue_(device, "reference.queue", max_pixels * max_batch),
       next_queue_(device, "reference.next_queue", max_pixels * max_batch),
       hits_(device.array<gpu::Hit>("reference.hits", max_pixels * max_batch)),
@@ -30,7 +30,7 @@ const Buffer& ReferenceStage::record(Recorder& rec, const RayStage& rays, const 
                                       .pixel_count = pixel_count,
                                       .first_sample = in.camera.first_sample,
                                       .seed = in.camera.seed};
-        rays.closest(rec, *queue, hits_, traceSeed(in.camera.seed, in.camera.first_sample, depth, false));
+        rays.closest(rec, *queue, hits_, traceSeed(in.camera.seed, in.camera.first_sample, depth));
         rays.reset(rec, next->size);
         rays.reset(rec, shadow_size_);
         rec.runIndirect(shade_, queue->size, 0, params,
@@ -38,8 +38,7 @@ const Buffer& ReferenceStage::record(Recorder& rec, const RayStage& rays, const 
                          {"NextQueue", next->size}, {"NextRays", next->rays}, {"ShadowQueue", shadow_size_}, {"ShadowRays", shadow_rays_}});
         rays.close(rec, next->size);
         rays.close(rec, shadow_size_);
-        rays.visible(rec, shadow_size_, shadow_rays_, radiance_,
-                     traceSeed(in.camera.seed, in.camera.first_sample, depth, true));
+        rays.visible(rec, shadow_size_, shadow_rays_, radiance_);
         std::swap(queue, next);
     }
     return radiance_;

@@ -31,12 +31,12 @@ Bsdf bsdfAt(SurfaceMaterial m, bool front)
 {
     Bsdf b;
     b.base_color = m.base_color;
-    b.metallic = m.metallic;
+    b.metallic = hasFeature(kFeatureMetal) ? m.metallic : 0.0;
     b.f0 = min(square((m.ior - 1.0) / (m.ior + 1.0)) * m.specular_color, vec3(1.0)) * m.specular;
     b.f90 = m.specular;
     b.smooth_specular = m.roughness < kSmoothRoughness;
     b.alpha = max(square(m.roughness), square(kSmoothRoughness));
-    b.transmission = m.transmission;
+    b.transmission = hasFeature(kFeatureTransmission) ? m.transmission : 0.0;
     b.thin = (m.flags & kMaterialThin) != 0u;
     b.eta = front || b.thin ? m.ior : 1.0 / m.ior;
     return b;
@@ -64,7 +64,9 @@ float fresnelExact(float cosine, float eta)
 vec3 dielectricFresnel(Bsdf b, float cosine)
 {
     float rise = schlick(cosine);
-    if (b.transmission > 0.0)
+    if (!hasFeature(kFeatureSpecular))
+        return vec3(0.0);
+    if (hasFeature(kFeatureTransmission) && b.transmission > 0.0)
     {
         float normal = square((b.eta - 1.0) / (b.eta + 1.0));
         rise = normal < 1.0 ? clamp((fresnelExact(cosine, b.eta) - normal) / (1.0 - normal), 0.0, 1.0) : 1.0;
@@ -150,7 +152,7 @@ vec3 evaluateBsdf(Bsdf b, vec3 wo, vec3 wi, out float pdf)
         f = belowColor(b, dot(wo, h)) * (1.0 - b.transmission) * kInvPi;
         pdf = p.diffuse * wi.z * kInvPi;
     }
-    if (b.smooth_specular)
+    if (!hasFeature(kFeatureSpecular) || b.smooth_specular)
         return f;
     if (reflected || b.thin)
     {
@@ -162,7 +164,7 @@ vec3 evaluateBsdf(Bsdf b, vec3 wo, vec3 wi, out float pdf)
         pdf += (reflected ? p.reflection : p.transmission) * visibleNormalPdf(wo, h, b.alpha) / (4.0 * cosine);
         return f;
     }
-    if (b.transmission == 0.0)
+    if (!hasFeature(kFeatureTransmission) || b.transmission == 0.0)
         return f;
     vec3 h = normalize(wo + b.eta * wi);
     h = h.z < 0.0 ? -h : h;
@@ -201,7 +203,7 @@ BsdfSample sampleBsdf(Bsdf b, vec3 wo, float choice, vec2 u)
     LobeProbabilities p = lobeProbabilities(b, wo.z);
     if (p.reflection + p.diffuse + p.transmission == 0.0)
         return kAbsorbed;
-    bool diffuse = choice < p.diffuse;
+    bool diffuse = !hasFeature(kFeatureSpecular) || choice < p.diffuse;
     bool reflection = !diffuse && (choice < p.diffuse + p.reflection || p.transmission == 0.0);
     if (!diffuse && b.smooth_specular)
         return p.reflection == 0.0 && reflection ? kAbsorbed : deltaSample(b, p, wo, reflection);

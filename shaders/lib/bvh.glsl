@@ -1,14 +1,11 @@
-// Ray traversal of the 4-wide tree: the one closest-hit and the one any-hit routine. Functions only.
+// Ray traversal of the 4-wide tree: the one closest-hit and the one any-hit routine, geometry only. What translucent
+// surfaces do to a ray is decided outside these loops (lib/trace.glsl): texture lookups inside them would cost every ray
+// registers, and software Vulkan, which runs both sides of every branch, most of its speed. Functions only.
 #ifndef LIB_BVH_GLSL
 #define LIB_BVH_GLSL
-#include "shaders/lib/coverage.glsl"
 #include "shaders/lib/math.glsl"
-#include "shaders/lib/random.glsl"
 #include "shaders/lib/scene.glsl"
 #include "shaders/rays/rays.h"
-
-layout(constant_id = 0) const bool kSceneHasAlpha = true; // false: traversal carries no alpha test at all
-layout(constant_id = 1) const bool kSceneHasThin = true;  // false: nothing but opaque surfaces stops a shadow ray
 
 /// 1 / direction without infinities: 0 * inf = NaN would lose boxes that a ray grazes.
 vec3 safeInverse(vec3 direction)
@@ -31,7 +28,8 @@ vec4 hitBoxes(uint node, vec3 origin, vec3 inverse, float t_max)
 
 /// Watertight along shared edges: the edge functions of two neighbours are exact negatives of each other
 /// (Davidovic et al. 2012, "3D Rasterization", in the sum-and-difference form, which FMA contraction cannot break).
-bool hitTriangle(uint slot, vec3 origin, vec3 direction, inout Hit hit)
+/// @return whether it is met between t_min (exclusive) and hit.t, which then is it
+bool hitTriangle(uint slot, vec3 origin, vec3 direction, float t_min, inout Hit hit)
 {
     vec3 a = bvh_triangles[slot].v0 - origin;
     vec3 b = bvh_triangles[slot].v1 - origin;
@@ -45,41 +43,12 @@ bool hitTriangle(uint slot, vec3 origin, vec3 direction, inout Hit hit)
     vec3 normal = cross(e1, e0);
     float along = dot(normal, direction);
     float t = dot(normal, a) / along;
-    if (!(t > 0.0 && t < hit.t)) // also refuses NaN: a ray in the triangle's plane
+    if (!(t > t_min && t < hit.t)) // also refuses NaN: a ray in the triangle's plane
         return false;
     float sum = u + v + w;
     vec2 barycentrics = sum == 0.0 ? vec2(0.0) : vec2(u, v) / sum;
     hit = Hit(t, slot, barycentrics);
     return true;
-}
-
-/// Whether a translucent triangle stops this ray: decided by coverage against a number that is the same however often
-/// the triangle is met (spatial splits store it several times).
-bool alphaStops(Hit hit, uint seed)
-{
-    float coverage = surfaceCoverage(hit.slot, hit.barycentrics);
-    return toUnitFloat(hash(seed, bvh_triangles[hit.slot].triangle)) < coverage;
-}
-
-/// @param ignored triangles with one of these flags are not there
-bool hitLeaf(uint child, vec3 origin, vec3 direction, uint seed, uint ignored, inout Hit hit)
-{
-    uint slot = child & kLeafFirstMask;
-    uint end = slot + ((child >> kLeafCountShift) & kLeafCountMask) + 1u;
-    bool any = false;
-    for (; slot < end; ++slot)
-    {
-        Hit nearer = hit;
-        if (!hitTriangle(slot, origin, direction, nearer))
-            continue;
-        if (ignored != 0u && (bvh_triangles[slot].flags & ignored) != 0u)
-            continue;
-        if (kSceneHasAlpha && (bvh_triangles[slot].flags & kTriangleAlpha) != 0u && !alphaStops(nearer, seed))
-            continue;
-        hit = nearer;
-        any = true;
-    }
-    return any;
 }
 
 void swapIfFarther(inout float t0, inout uint c0, inout float t1, inout uint c1)
@@ -93,8 +62,10 @@ void swapIfFarther(inout float t0, inout uint c0, inout float t1, inout uint c1)
     c0 = c;
 }
 
-/// The nearest surface within t_max. `seed` decides stochastic alpha.
-Hit closestHit(vec3 origin, vec3 direction, float t_max, uint seed)
+uint leafEnd(uint child) { return (child & kLeafFirstMask) + ((child >> kLeafCountShift) & kLeafCountMask) + 1u; }
+
+/// The nearest triangle between t_min (exclusive) and t_max, whatever its coverage.
+Hit nearestTriangle(vec3 origin, vec3 direction, float t_min, float t_max)
 {
     uint stack[kTraversalStackSize];
     uint depth = 0u;
@@ -126,21 +97,23 @@ Hit closestHit(vec3 origin, vec3 direction, float t_max, uint seed)
             }
         }
         else
-            hitLeaf(current, origin, direction, seed, 0u, hit);
+            for (uint slot = current & kLeafFirstMask; slot < leafEnd(current); ++slot)
+                hitTriangle(slot, origin, direction, t_min, hit);
         if (depth == 0u)
             return hit;
         current = stack[--depth];
     }
 }
 
-/// Whether anything but thin transmissive surfaces lies within t_max. `seed` decides stochastic alpha.
-bool anyHit(vec3 origin, vec3 direction, float t_max, uint seed)
+/// Whether an opaque triangle lies within t_max. Translucent ones (any kTriangle* flag) let the ray pass;
+/// `met_translucent` says whether there was one, so that the caller knows when nothing is left to look at.
+bool anyOpaqueTriangle(vec3 origin, vec3 direction, float t_max, out bool met_translucent)
 {
     uint stack[kTraversalStackSize];
     uint depth = 0u;
     uint current = 0u;
-    Hit hit = Hit(t_max, kNone, vec2(0.0));
     vec3 inverse = safeInverse(direction);
+    met_translucent = false;
     while (true)
     {
         if ((current & kLeafBit) == 0u)
@@ -161,8 +134,16 @@ bool anyHit(vec3 origin, vec3 direction, float t_max, uint seed)
                 continue;
             }
         }
-        else if (hitLeaf(current, origin, direction, seed, kSceneHasThin ? kTriangleThin : 0u, hit))
-            return true;
+        else
+            for (uint slot = current & kLeafFirstMask; slot < leafEnd(current); ++slot)
+            {
+                Hit hit = Hit(t_max, kNone, vec2(0.0));
+                if (!hitTriangle(slot, origin, direction, 0.0, hit))
+                    continue;
+                if (!kSceneHasTranslucency || bvh_triangles[slot].flags == 0u)
+                    return true;
+                met_translucent = true;
+            }
         if (depth == 0u)
             return false;
         current = stack[--depth];

@@ -30,7 +30,7 @@ vec3 environmentToDirection(vec2 uv)
 /// Radiance that arrives from direction d when nothing is in the way.
 vec3 environmentRadiance(vec3 d)
 {
-    if (scene.environment_light == kNone)
+    if (!hasFeature(kFeatureEnvironment))
         return vec3(0.0);
     vec2 uv = directionToEnvironment(d);
     float rows = float(textureSize(environment_map, 0).y);
@@ -41,7 +41,7 @@ vec3 environmentRadiance(vec3 d)
 /// Solid-angle density with which sampleLight() finds direction d, selection included.
 float environmentPdf(vec3 d)
 {
-    if (scene.environment_light == kNone)
+    if (!hasFeature(kFeatureEnvironment))
         return 0.0;
     vec2 size = vec2(scene.environment_importance_size);
     uvec2 texel = min(uvec2(directionToEnvironment(d) * size), scene.environment_importance_size - 1u);
@@ -97,7 +97,7 @@ LightSample sampleTriangle(Light light, uint index, vec3 point, vec2 u)
     if (cosine <= 0.0)
         return kNoLight;
     vec3 emission = light.emission;
-    if (light.material != kNone)
+    if (hasFeature(kFeatureEmissiveMaps) && light.material != kNone)
     {
         uvec3 v = triangles[light.triangle].vertices;
         vec2 uv0 = interpolate(weights, vertices[v.x].uv0, vertices[v.y].uv0, vertices[v.z].uv0);
@@ -113,18 +113,22 @@ LightSample sampleLight(vec3 point, inout Sampler s)
 {
     uvec2 pick = nextBits(s);
     vec2 u = nextPair(s);
-    uvec2 texel_pick = nextBits(s);
+    uvec2 texel_pick = uvec2(0u);
+    if (hasFeature(kFeatureEnvironment))
+        texel_pick = nextBits(s);
+    else
+        ++s.dimension;
     if (scene.light_count == 0u)
         return kNoLight;
     uint i = toIndex(pick.x, scene.light_count);
     if (toUnitFloat(pick.y) >= light_aliases[i].threshold)
         i = light_aliases[i].alias;
     Light light = lights[i];
-    if (light.kind == kLightEnvironment)
+    if (hasFeature(kFeatureEnvironment) && light.kind == kLightEnvironment)
         return sampleEnvironment(light.pmf, texel_pick, u);
-    if (light.kind == kLightTriangle || light.kind == kLightTriangleTwoSided)
+    if (hasFeature(kFeatureTriangleLights) && (light.kind == kLightTriangle || light.kind == kLightTriangleTwoSided))
         return sampleTriangle(light, i, point, u);
-    return samplePunctual(light, point);
+    return hasFeature(kFeaturePunctualLights) ? samplePunctual(light, point) : kNoLight;
 }
 
 /// Multiple importance sampling, power heuristic with exponent 2 (Veach & Guibas 1995).

@@ -3,6 +3,14 @@
 #define LIB_SCENE_GLSL
 #include "format/gpu_scene.h"
 
+// What the scene has, known when the pipeline is built: what it has not costs nothing.
+layout(constant_id = 0) const uint kSceneFeatures = 0xffffffffu; // kFeature*
+layout(constant_id = 1) const uint kUsedTexturePages = kTexturePageCount;
+bool hasFeature(uint feature) { return (kSceneFeatures & feature) != 0u; }
+const bool kSceneHasAlpha = (kSceneFeatures & kFeatureAlpha) != 0u;
+const bool kSceneHasThin = (kSceneFeatures & kFeatureThin) != 0u;
+const bool kSceneHasTranslucency = (kSceneFeatures & (kFeatureAlpha | kFeatureThin)) != 0u;
+
 layout(set = 0, binding = kSceneInfoBinding, scalar) uniform SceneBlock { SceneInfo scene; };
 layout(set = 0, binding = kBvhNodesBinding, scalar) readonly buffer BvhNodes { BvhNode bvh_nodes[]; };
 layout(set = 0, binding = kBvhTrianglesBinding, scalar) readonly buffer BvhTriangles { BvhTriangle bvh_triangles[]; };

@@ -83,7 +83,7 @@ Surface surfaceAt(uint slot, vec2 barycentrics, vec3 direction)
     vec3 normal = interpolate(weights, unpackNormal(vertices[v.x].normal), unpackNormal(vertices[v.y].normal),
                               unpackNormal(vertices[v.z].normal));
     s.normal = dot(normal, normal) > 1e-12 ? normalize(normal) : s.geometric_normal;
-    if (materials[s.material].normal_texture != kNone)
+    if (hasFeature(kFeatureNormalMaps) && materials[s.material].normal_texture != kNone)
         s.normal = mappedNormal(s.normal, v, weights, s);
 
     s.front = dot(s.geometric_normal, direction) < 0.0;
@@ -103,7 +103,9 @@ vec3 surfaceEmission(uint material, vec2 uv0, vec2 uv1)
 {
     vec3 emission = materials[material].emission;
     uint ref = materials[material].emissive_texture;
-    return ref == kNone || emission == vec3(0.0) ? emission : emission * sampleTexture(ref, uv0, uv1, 0.0).rgb;
+    if (hasFeature(kFeatureEmissiveMaps) && ref != kNone && emission != vec3(0.0))
+        emission *= sampleTexture(ref, uv0, uv1, 0.0).rgb;
+    return emission;
 }
 
 /// glTF 2.0 metallic-roughness and the extensions of gpu_scene.h's Material, at one point.
@@ -124,12 +126,14 @@ SurfaceMaterial materialAt(Surface s)
     if (ref != kNone)
         m.base_color *= sampleTexture(ref, s.uv0, s.uv1, 0.0).rgb;
     ref = materials[s.material].metallic_roughness_texture;
-    if (ref != kNone)
+    if (hasFeature(kFeatureMetallicRoughnessMaps) && ref != kNone)
     {
         vec4 texel = sampleTexture(ref, s.uv0, s.uv1, 0.0);
         m.roughness *= texel.g;
         m.metallic *= texel.b;
     }
+    if (!hasFeature(kFeatureRareMaps))
+        return m;
     ref = materials[s.material].transmission_texture;
     if (ref != kNone)
         m.transmission *= sampleTexture(ref, s.uv0, s.uv1, 0.0).r;

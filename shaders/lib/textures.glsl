@@ -4,7 +4,7 @@
 #include "shaders/lib/scene.glsl"
 
 // No device is asked for non-uniform descriptor indexing (software Vulkan lacks it): one constant index a case.
-#define TEXTURE_PAGE_CASE(index) case index: size = vec2(textureSize(texture_pages[index], 0)); break;
+#define TEXTURE_PAGE_CASE(index) case index: if (index < kUsedTexturePages) size = vec2(textureSize(texture_pages[index], 0)); break;
 vec2 texturePageSize(uint page)
 {
     vec2 size = vec2(1.0);
@@ -19,7 +19,7 @@ vec2 texturePageSize(uint page)
 }
 #undef TEXTURE_PAGE_CASE
 
-#define TEXTURE_PAGE_CASE(index) case index: texel = textureLod(texture_pages[index], uvw, lod); break;
+#define TEXTURE_PAGE_CASE(index) case index: if (index < kUsedTexturePages) texel = textureLod(texture_pages[index], uvw, lod); break;
 vec4 sampleTexturePage(uint page, vec3 uvw, float lod)
 {
     vec4 texel = vec4(1.0);

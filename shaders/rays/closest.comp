@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#include "shaders/lib/bvh.glsl"
+#include "shaders/lib/trace.glsl"
 
 // Finds the nearest surface along each ray of a queue. One thread per ray.
 

@@ -46,7 +46,8 @@ protected:
 
 TEST_F(CommandLine, CompilesBesideTheInputByDefault)
 {
-    const ProgramRun r = run(scene() + " --sun 0,-1,0,100 --view a=0,0,3,0,0,0,40 --compress zstd:1 --report " + path("r.json"));
+    const ProgramRun r =
+        run(scene() + " --sun 0,-1,0,100 --view a=0,0,3,0,0,0,40 --compress zstd:1 --report " + path("r.json"));
     EXPECT_EQ(r.code, 0) << r.output;
     EXPECT_TRUE(std::filesystem::exists(folder_ / "scene.lumi"));
     EXPECT_TRUE(std::filesystem::exists(folder_ / "r.json"));
@@ -69,10 +70,19 @@ TEST_F(CommandLine, VersionAndHelpSucceed)
 
 TEST_F(CommandLine, MistakesInArgumentsAreUsageErrors)
 {
-    const std::vector<std::string> mistakes{"", "--nonsense", scene() + " -o out.txt", scene() + " --sun 1,2,3", scene() + " --sun 0,0,0,1",
-                                            scene() + " --sun 1,2,3,x", scene() + " --view a=1,2", scene() + " --view a=0,0,0,0,0,0,40",
-                                            scene() + " --view a=0,0,1,0,0,0,180", scene() + " --compress zip",
-                                            scene() + " --compress zstd:99", scene() + " --env sky.png", "scene.obj"};
+    const std::vector<std::string> mistakes{"",
+                                            "--nonsense",
+                                            scene() + " -o out.txt",
+                                            scene() + " --sun 1,2,3",
+                                            scene() + " --sun 0,0,0,1",
+                                            scene() + " --sun 1,2,3,x",
+                                            scene() + " --view a=1,2",
+                                            scene() + " --view a=0,0,0,0,0,0,40",
+                                            scene() + " --view a=0,0,1,0,0,0,180",
+                                            scene() + " --compress zip",
+                                            scene() + " --compress zstd:99",
+                                            scene() + " --env sky.png",
+                                            "scene.obj"};
     for (const std::string& arguments : mistakes)
         EXPECT_EQ(run(arguments).code, 1) << arguments;
     EXPECT_FALSE(std::filesystem::exists(folder_ / "scene.lumi"));
@@ -81,8 +91,9 @@ TEST_F(CommandLine, MistakesInArgumentsAreUsageErrors)
 TEST_F(CommandLine, FilesThatCannotBeReadOrWrittenAreInputOutputErrors)
 {
     std::filesystem::create_directory(folder_ / "folder.gltf");
-    for (const std::string& arguments : {path("gone.gltf"), path("folder.gltf"), scene() + " -o " + path("none/out.lumi"),
-                                         scene() + " --env " + path("gone.exr")})
+    for (const std::string& arguments :
+         {path("gone.gltf"), path("folder.gltf"), scene() + " -o " + path("none/out.lumi"),
+          scene() + " --env " + path("gone.exr")})
     {
         const ProgramRun r = run(arguments);
         EXPECT_EQ(r.code, 2) << arguments << "\n" << r.output;

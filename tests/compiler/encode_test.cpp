@@ -46,7 +46,7 @@ TEST(Encode, HalfsRoundToNearestEven)
     EXPECT_EQ(half(1), 0x3c00);
     EXPECT_EQ(half(0.5f), 0x3800);
     EXPECT_EQ(half(65504), 0x7bff);
-    EXPECT_EQ(half(1e9f), 0x7bff); // clamped
+    EXPECT_EQ(half(1e9f), 0x7bff);            // clamped
     EXPECT_EQ(half(1 + 1.0f / 2048), 0x3c00); // halfway: to even
     EXPECT_EQ(half(1 + 3.0f / 2048), 0x3c02);
     EXPECT_EQ(half(0x1p-24f), 0x0001); // smallest subnormal

@@ -14,8 +14,6 @@
 #include <cstring>
 #include <fstream>
 
-
-
 namespace
 {
 std::string base64(const std::vector<unsigned char>& bytes)
@@ -63,18 +61,29 @@ int GltfBuilder::append(const char* list, const nlohmann::json& item)
     return int(json[list].size()) - 1;
 }
 
-int GltfBuilder::accessorOf(int view, size_t offset, const char* type, int component_type, size_t count, bool normalized)
+int GltfBuilder::accessorOf(int view, size_t offset, const char* type, int component_type, size_t count,
+                            bool normalized)
 {
-    return append("accessors", {{"bufferView", view}, {"byteOffset", offset}, {"type", type},
-                                {"componentType", component_type}, {"count", count}, {"normalized", normalized}});
+    return append("accessors", {{"bufferView", view},
+                                {"byteOffset", offset},
+                                {"type", type},
+                                {"componentType", component_type},
+                                {"count", count},
+                                {"normalized", normalized}});
 }
 
 int GltfBuilder::mesh(const nlohmann::json& primitive)
 {
     return append("meshes", {{"primitives", nlohmann::json::array({primitive})}});
 }
-int GltfBuilder::node(const nlohmann::json& node) { return append("nodes", node); }
-int GltfBuilder::material(const nlohmann::json& material) { return append("materials", material); }
+int GltfBuilder::node(const nlohmann::json& node)
+{
+    return append("nodes", node);
+}
+int GltfBuilder::material(const nlohmann::json& material)
+{
+    return append("materials", material);
+}
 
 int GltfBuilder::texture(uint32_t width, uint32_t height, const std::vector<uint8_t>& rgba)
 {
@@ -102,7 +111,10 @@ nlohmann::json GltfBuilder::withBuffer(bool embedded) const
     return document;
 }
 
-std::string GltfBuilder::text() const { return withBuffer(true).dump(); }
+std::string GltfBuilder::text() const
+{
+    return withBuffer(true).dump();
+}
 
 void GltfBuilder::writeGltf(const std::filesystem::path& path) const
 {
@@ -172,7 +184,8 @@ std::vector<unsigned char> encodePng(uint32_t width, uint32_t height, const std:
     const auto append = [](void* to, void* data, int bytes)
     {
         const auto* from = static_cast<const unsigned char*>(data);
-        static_cast<std::vector<unsigned char>*>(to)->insert(static_cast<std::vector<unsigned char>*>(to)->end(), from, from + bytes);
+        static_cast<std::vector<unsigned char>*>(to)->insert(static_cast<std::vector<unsigned char>*>(to)->end(), from,
+                                                             from + bytes);
     };
     stbi_write_png_to_func(append, &png, int(width), int(height), 4, rgba.data(), int(width * 4));
     return png;

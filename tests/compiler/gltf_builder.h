@@ -31,11 +31,13 @@ public:
     int view(const void* data, size_t bytes, size_t stride = 0);
 
     template <typename T>
-    int accessor(const std::vector<T>& values, const char* type, int component_type, size_t count, bool normalized = false)
+    int accessor(const std::vector<T>& values, const char* type, int component_type, size_t count,
+                 bool normalized = false)
     {
         return accessorOf(view(values.data(), values.size() * sizeof(T)), 0, type, component_type, count, normalized);
     }
-    int accessorOf(int view, size_t offset, const char* type, int component_type, size_t count, bool normalized = false);
+    int accessorOf(int view, size_t offset, const char* type, int component_type, size_t count,
+                   bool normalized = false);
 
     int positions(const std::vector<float>& xyz) { return accessor(xyz, "VEC3", 5126, xyz.size() / 3); }
 
@@ -49,7 +51,7 @@ public:
     /// One triangle (0,0,0) (1,0,0) (0,1,0) on node 0, with `extra` merged into its primitive.
     void triangle(const nlohmann::json& extra = nlohmann::json::object());
 
-    std::string text() const;                                   // .gltf with a data URI
+    std::string text() const; // .gltf with a data URI
     void writeGltf(const std::filesystem::path& path) const;
     void writeGlb(const std::filesystem::path& path) const;
 

@@ -24,7 +24,8 @@ TEST(Hierarchy, CombinesTranslationRotationScaleAndMatrices)
     // Parent: matrix, moves by (10, 0, 0). Child: quarter turn about y after doubling, then up by 1.
     GltfBuilder builder;
     builder.triangle();
-    builder.json["nodes"][0].update({{"translation", {0, 1, 0}}, {"rotation", {0, 0.7071067811865476, 0, 0.7071067811865476}},
+    builder.json["nodes"][0].update({{"translation", {0, 1, 0}},
+                                     {"rotation", {0, 0.7071067811865476, 0, 0.7071067811865476}},
                                      {"scale", {2, 2, 2}}});
     builder.node({{"matrix", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 10, 0, 0, 1}}, {"children", {0}}});
     builder.json["scenes"][0]["nodes"] = {1};
@@ -61,7 +62,8 @@ TEST(Hierarchy, NormalsFollowNonUniformScale)
     builder.json["nodes"][0]["scale"] = {2, 1, 1};
     const Result<SceneData> scene = builder.scene();
     ASSERT_TRUE(scene) << scene.error().message;
-    expectNear(decodeNormal(scene->mesh.attributes[0].normal), normalizeOr({0.5f, 1, 0}, {}), 1e-4f); // inverse transpose
+    expectNear(decodeNormal(scene->mesh.attributes[0].normal), normalizeOr({0.5f, 1, 0}, {}),
+               1e-4f); // inverse transpose
 }
 
 TEST(Hierarchy, EveryInstanceIsAnObjectOfItsOwn)
@@ -135,11 +137,18 @@ TEST(Hierarchy, LightsAndCamerasLookAlongTheirNodesMinusZ)
     builder.triangle();
     builder.json["extensionsUsed"] = {"KHR_lights_punctual"};
     builder.json["extensions"]["KHR_lights_punctual"]["lights"] = {
-        {{"type", "spot"}, {"intensity", 3}, {"color", {1, 0.5, 0}}, {"spot", {{"innerConeAngle", 0.1}, {"outerConeAngle", 0.3}}}}};
+        {{"type", "spot"},
+         {"intensity", 3},
+         {"color", {1, 0.5, 0}},
+         {"spot", {{"innerConeAngle", 0.1}, {"outerConeAngle", 0.3}}}}};
     builder.json["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 0.8}, {"znear", 0.1}}}}};
     // A quarter turn about x: -z becomes +y... up (+y) becomes +z.
-    builder.node({{"translation", {1, 2, 3}}, {"rotation", {0.7071067811865476, 0, 0, 0.7071067811865476}}, {"scale", {4, 4, 4}},
-                  {"camera", 0}, {"name", "eye"}, {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
+    builder.node({{"translation", {1, 2, 3}},
+                  {"rotation", {0.7071067811865476, 0, 0, 0.7071067811865476}},
+                  {"scale", {4, 4, 4}},
+                  {"camera", 0},
+                  {"name", "eye"},
+                  {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
     builder.json["scenes"][0]["nodes"] = {0, 1};
     const auto imported = builder.import();
     ASSERT_TRUE(imported) << imported.error().message;

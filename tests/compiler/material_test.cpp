@@ -39,8 +39,9 @@ TEST(Material, DefaultsAreGltfs)
 
 TEST(Material, EmissionIsFactorTimesStrength)
 {
-    const Result<SceneData> scene = withMaterial(
-        {{"emissiveFactor", {1, 0.5, 0}}, {"extensions", {{"KHR_materials_emissive_strength", {{"emissiveStrength", 8}}}}}});
+    const Result<SceneData> scene =
+        withMaterial({{"emissiveFactor", {1, 0.5, 0}},
+                      {"extensions", {{"KHR_materials_emissive_strength", {{"emissiveStrength", 8}}}}}});
     ASSERT_TRUE(scene) << scene.error().message;
     EXPECT_EQ(scene->materials[0].emission.x, 8);
     EXPECT_EQ(scene->materials[0].emission.y, 4);
@@ -50,7 +51,9 @@ TEST(Material, EmissionIsFactorTimesStrength)
 TEST(Material, TransmissionIsThinWithoutThicknessAndAbsorbsWithIt)
 {
     const nlohmann::json transmission = {{"transmissionFactor", 1}};
-    const auto thin = withMaterial({{"extensions", {{"KHR_materials_transmission", transmission}, {"KHR_materials_volume", {{"thicknessFactor", 0}}}}}});
+    const auto thin = withMaterial(
+        {{"extensions",
+          {{"KHR_materials_transmission", transmission}, {"KHR_materials_volume", {{"thicknessFactor", 0}}}}}});
     ASSERT_TRUE(thin) << thin.error().message;
     EXPECT_EQ(thin->materials[0].flags, gpu::kMaterialThin);
     const auto solid = withMaterial(
@@ -75,21 +78,24 @@ TEST(Material, TrianglesAreFlaggedAlphaOnlyWhereCoverageCanBeBelowOne)
         const Result<SceneData> scene = withMaterial(material, texture_alpha);
         return scene ? materialTriangleFlags(*scene)[0] : 99u;
     };
-    const nlohmann::json textured = {{"alphaMode", "MASK"}, {"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}};
+    const nlohmann::json textured = {{"alphaMode", "MASK"},
+                                     {"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}};
     const nlohmann::json opaque = {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}};
     EXPECT_EQ(flags(textured, 255), 0u);
     EXPECT_EQ(flags(textured, 254), gpu::kTriangleAlpha);
     EXPECT_EQ(flags(opaque, 0), 0u);
     EXPECT_EQ(flags({{"alphaMode", "BLEND"}}, 255), 0u);
-    EXPECT_EQ(flags({{"alphaMode", "BLEND"}, {"pbrMetallicRoughness", {{"baseColorFactor", {1, 1, 1, 0.5}}}}}, 255), gpu::kTriangleAlpha);
+    EXPECT_EQ(flags({{"alphaMode", "BLEND"}, {"pbrMetallicRoughness", {{"baseColorFactor", {1, 1, 1, 0.5}}}}}, 255),
+              gpu::kTriangleAlpha);
 }
 
 TEST(Material, OnlySmoothThinTransmissionLetsShadowRaysPass)
 {
     const auto flags = [](double roughness)
     {
-        const Result<SceneData> scene = withMaterial({{"pbrMetallicRoughness", {{"roughnessFactor", roughness}}},
-                                                      {"extensions", {{"KHR_materials_transmission", {{"transmissionFactor", 1}}}}}});
+        const Result<SceneData> scene =
+            withMaterial({{"pbrMetallicRoughness", {{"roughnessFactor", roughness}}},
+                          {"extensions", {{"KHR_materials_transmission", {{"transmissionFactor", 1}}}}}});
         return scene ? materialTriangleFlags(*scene)[0] : 99u;
     };
     EXPECT_EQ(flags(0), gpu::kTriangleThin);
@@ -107,7 +113,10 @@ TEST(Material, TextureTransformScalesTurnsThenMoves)
                          {{"index", texture},
                           {"extensions",
                            {{"KHR_texture_transform",
-                             {{"offset", {0.5, 0.25}}, {"rotation", std::acos(-1.0) / 2}, {"scale", {2, 3}}, {"texCoord", 1}}}}}}}}}});
+                             {{"offset", {0.5, 0.25}},
+                              {"rotation", std::acos(-1.0) / 2},
+                              {"scale", {2, 3}},
+                              {"texCoord", 1}}}}}}}}}});
     builder.triangle({{"material", 0}});
     const auto imported = builder.import();
     ASSERT_TRUE(imported) << imported.error().message;
@@ -130,7 +139,8 @@ TEST(Material, AnImageUsedAsColourAndAsDataIsStoredOnceEach)
     const int texture = builder.texture(1, 1, {1, 2, 3, 255});
     const nlohmann::json info = {{"index", texture}};
     builder.material({{"pbrMetallicRoughness", {{"baseColorTexture", info}, {"metallicRoughnessTexture", info}}},
-                      {"emissiveTexture", info}, {"emissiveFactor", {1, 1, 1}}});
+                      {"emissiveTexture", info},
+                      {"emissiveFactor", {1, 1, 1}}});
     builder.triangle({{"material", 0}});
     const Result<SceneData> scene = builder.scene();
     ASSERT_TRUE(scene) << scene.error().message;
@@ -144,9 +154,11 @@ TEST(Material, AnImageUsedAsColourAndAsDataIsStoredOnceEach)
 
 TEST(Material, SpecularGlossinessBecomesADielectricWithTheSameF0)
 {
-    const Result<SceneData> scene = withMaterial(
-        {{"extensions", {{"KHR_materials_pbrSpecularGlossiness",
-                          {{"diffuseFactor", {0.1, 0.2, 0.3, 1}}, {"specularFactor", {0.5, 0.6, 0.7}}, {"glossinessFactor", 0.75}}}}}});
+    const Result<SceneData> scene = withMaterial({{"extensions",
+                                                   {{"KHR_materials_pbrSpecularGlossiness",
+                                                     {{"diffuseFactor", {0.1, 0.2, 0.3, 1}},
+                                                      {"specularFactor", {0.5, 0.6, 0.7}},
+                                                      {"glossinessFactor", 0.75}}}}}});
     ASSERT_TRUE(scene) << scene.error().message;
     const gpu::Material& m = scene->materials[0];
     EXPECT_FLOAT_EQ(m.base_color.y, 0.2f);

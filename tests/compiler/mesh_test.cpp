@@ -48,7 +48,8 @@ TEST(Mesh, ListsStripsAndFansOfEveryIndexTypeGiveTheSameSurface)
             const int indices = type == 5121   ? builder.accessor(u8, "SCALAR", type, u8.size())
                                 : type == 5123 ? builder.accessor(u16, "SCALAR", type, u16.size())
                                                : builder.accessor(c.indices, "SCALAR", type, c.indices.size());
-            const int mesh = builder.mesh({{"attributes", {{"POSITION", builder.positions(kQuad)}}}, {"mode", c.mode}, {"indices", indices}});
+            const int mesh = builder.mesh(
+                {{"attributes", {{"POSITION", builder.positions(kQuad)}}}, {"mode", c.mode}, {"indices", indices}});
             builder.node({{"mesh", mesh}});
             const Result<SceneData> scene = builder.scene();
             ASSERT_TRUE(scene) << scene.error().message;
@@ -187,7 +188,8 @@ GltfBuilder normalMapped(bool mirrored_half)
     const std::vector<uint8_t> indices{0, 1, 2, 0, 2, 3, 0, 3, 4};
     const int accessor = builder.accessor(indices, "SCALAR", 5121, indices.size());
     builder.node({{"mesh", builder.mesh({{"attributes", {{"POSITION", positions}, {"TEXCOORD_0", coordinates}}},
-                                         {"indices", accessor}, {"material", 0}})}});
+                                         {"indices", accessor},
+                                         {"material", 0}})}});
     return builder;
 }
 

@@ -21,7 +21,9 @@ GltfBuilder richScene()
 {
     GltfBuilder builder;
     const int texture = builder.texture(2, 2, {255, 0, 0, 255, 0, 255, 0, 0, 0, 0, 255, 255, 9, 9, 9, 255});
-    builder.material({{"name", "leaf"}, {"alphaMode", "MASK"}, {"normalTexture", {{"index", texture}}},
+    builder.material({{"name", "leaf"},
+                      {"alphaMode", "MASK"},
+                      {"normalTexture", {{"index", texture}}},
                       {"pbrMetallicRoughness", {{"baseColorTexture", {{"index", texture}}}}}});
     builder.material({{"name", "lamp"}, {"emissiveFactor", {1, 1, 1}}});
     const int uv = builder.accessor(std::vector<float>{0, 1, 1, 1, 0, 0}, "VEC2", 5126, 3);

@@ -9,7 +9,10 @@
 namespace
 {
 
-ProgramRun compare(const std::string& arguments) { return runProgram(LUMICUT_COMPARE, arguments); }
+ProgramRun compare(const std::string& arguments)
+{
+    return runProgram(LUMICUT_COMPARE, arguments);
+}
 
 class Compare : public testing::Test
 {
@@ -83,7 +86,9 @@ struct Fault
     const char* words;
 };
 
-class CompareFaults : public Compare, public testing::WithParamInterface<Fault> {};
+class CompareFaults : public Compare, public testing::WithParamInterface<Fault>
+{
+};
 
 TEST_P(CompareFaults, GetASentenceAndTheDocumentedCode)
 {
@@ -99,11 +104,13 @@ TEST_P(CompareFaults, GetASentenceAndTheDocumentedCode)
 
 INSTANTIATE_TEST_SUITE_P(
     All, CompareFaults,
-    testing::Values(Fault{"NoArguments", "", 1, "REFERENCE"}, Fault{"UnknownOption", "@/a.exr @/b.exr --wrong", 1, "--wrong"},
+    testing::Values(Fault{"NoArguments", "", 1, "REFERENCE"},
+                    Fault{"UnknownOption", "@/a.exr @/b.exr --wrong", 1, "--wrong"},
                     Fault{"ShortCrop", "@/a.exr @/b.exr --crop 1,2,3", 1, "--crop"},
                     Fault{"CropOutside", "@/a.exr @/b.exr --crop 0,0,21,10", 1, "20 x 10"},
                     Fault{"EmptyCrop", "@/a.exr @/b.exr --crop 5,5,5,6", 1, "does not lie"},
-                    Fault{"MissingFile", "@/a.exr @/none.exr", 2, "none.exr: error: The file cannot be opened: No such file"},
+                    Fault{"MissingFile", "@/a.exr @/none.exr", 2,
+                          "none.exr: error: The file cannot be opened: No such file"},
                     Fault{"Folder", "@ @/b.exr", 2, "folder"},
                     Fault{"SizesDiffer", "@/a.exr @/small.exr", 3, "10 x 10 pixels but the reference"},
                     Fault{"NotAnImage", "/bin/sh @/b.exr", 3, "not an OpenEXR"},

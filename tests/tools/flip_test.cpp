@@ -1,7 +1,7 @@
-// FLIP. The authors publish mean errors for pairs of test images (0.159691 LDR, 0.283478 HDR), but the images could not be
-// had where this was written, so those two numbers are NOT checked here. Checked instead: closed forms where the answer is
-// known by hand, a slow twin written straight from the papers' formulas (two-dimensional kernels, double precision, colour
-// matrices derived from the primaries), and properties every error measure must have.
+// FLIP. The authors publish mean errors for pairs of test images (0.159691 LDR, 0.283478 HDR), but the images could not
+// be had where this was written, so those two numbers are NOT checked here. Checked instead: closed forms where the
+// answer is known by hand, a slow twin written straight from the papers' formulas (two-dimensional kernels, double
+// precision, colour matrices derived from the primaries), and properties every error measure must have.
 #include "tests/tools/random_image.h"
 #include "tools/compare/flip.h"
 #include "tools/compare/flip_color.h"
@@ -134,7 +134,8 @@ struct Kernel
         size_t i = 0;
         for (int dy = -radius; dy <= radius; ++dy)
             for (int dx = -radius; dx <= radius; ++dx)
-                sum += weights[i++] * plane[size_t(std::clamp(y + dy, 0, height - 1) * width + std::clamp(x + dx, 0, width - 1))];
+                sum += weights[i++] *
+                       plane[size_t(std::clamp(y + dy, 0, height - 1) * width + std::clamp(x + dx, 0, width - 1))];
         return sum;
     }
 };
@@ -226,9 +227,11 @@ TEST(Flip, DefaultIsTheViewingDistanceOfThePaper)
 
 TEST(Flip, BlackAgainstWhiteByHand)
 {
-    // Lightness 0 and 100, no chroma: distance 100. Green against blue in Hunt-adjusted Lab (CIELAB of the sRGB primaries:
-    // 87.73, -86.18, 83.18 and 32.30, 79.19, -107.86) is |87.73 - 32.30| + hypot(-75.61 - 25.58, 72.98 + 34.84) = 203.3.
-    const double largest = std::pow(87.73 - 32.30 + std::hypot(0.8773 * -86.18 - 0.3230 * 79.19, 0.8773 * 83.18 + 0.3230 * 107.86), 0.7);
+    // Lightness 0 and 100, no chroma: distance 100. Green against blue in Hunt-adjusted Lab (CIELAB of the sRGB
+    // primaries: 87.73, -86.18, 83.18 and 32.30, 79.19, -107.86) is |87.73 - 32.30| + hypot(-75.61 - 25.58, 72.98
+    // + 34.84) = 203.3.
+    const double largest =
+        std::pow(87.73 - 32.30 + std::hypot(0.8773 * -86.18 - 0.3230 * 79.19, 0.8773 * 83.18 + 0.3230 * 107.86), 0.7);
     const double distance = std::pow(100.0, 0.7);
     const double want = 0.95 + 0.05 * (distance - 0.4 * largest) / (0.6 * largest);
     const FlipMap map = ldrFlip(constantImage(32, 32, 0, 0, 0), constantImage(32, 32, 1, 1, 1));
@@ -244,13 +247,15 @@ TEST(Flip, GreenAgainstBlueIsTheLargestError)
 TEST(Flip, ConstantColoursReduceToTheColourPipeline)
 {
     const Twin twin;
-    const Vec3 colors[] = {{0.2, 0.2, 0.2}, {0.001, 0.002, 0.001}, {0.9, 0.1, 0.05}, {0.1, 0.8, 0.3}, {0.05, 0.1, 0.9}, {1, 1, 0.2}};
+    const Vec3 colors[] = {{0.2, 0.2, 0.2}, {0.001, 0.002, 0.001}, {0.9, 0.1, 0.05},
+                           {0.1, 0.8, 0.3}, {0.05, 0.1, 0.9},      {1, 1, 0.2}};
     for (const Vec3& a : colors)
     {
         for (const Vec3& b : colors)
         {
             const double got = ldrFlip(constantImage(20, 20, float(a[0]), float(a[1]), float(a[2])),
-                                       constantImage(20, 20, float(b[0]), float(b[1]), float(b[2]))).mean;
+                                       constantImage(20, 20, float(b[0]), float(b[1]), float(b[2])))
+                                   .mean;
             // The release's colour matrix is rounded; it differs from the standard's by a few 1e-5.
             EXPECT_NEAR(got, twin.colorError(a, b), 5e-5);
         }

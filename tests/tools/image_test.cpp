@@ -18,8 +18,8 @@ namespace
 {
 
 /// Writes `values` (one channel per name, all the same) with OpenEXR itself.
-void writeChannels(const std::filesystem::path& path, const std::vector<std::string>& names, Imf::Compression compression,
-                   int width, int height, std::vector<float> values)
+void writeChannels(const std::filesystem::path& path, const std::vector<std::string>& names,
+                   Imf::Compression compression, int width, int height, std::vector<float> values)
 {
     Imf::Header header(width, height);
     header.compression() = compression;
@@ -79,8 +79,8 @@ TEST(Exr, GreyImageFillsAllThreeChannels)
 TEST(Exr, ReadsEveryLosslessCompressionAndIgnoresOtherChannels)
 {
     const TemporaryFolder folder;
-    for (const Imf::Compression compression : {Imf::NO_COMPRESSION, Imf::RLE_COMPRESSION, Imf::ZIPS_COMPRESSION,
-                                               Imf::ZIP_COMPRESSION, Imf::PIZ_COMPRESSION})
+    for (const Imf::Compression compression :
+         {Imf::NO_COMPRESSION, Imf::RLE_COMPRESSION, Imf::ZIPS_COMPRESSION, Imf::ZIP_COMPRESSION, Imf::PIZ_COMPRESSION})
     {
         writeChannels(folder / "c.exr", {"A", "B", "G", "R", "Z"}, compression, 2, 2, {1, 2, 3, 4});
         const Result<ImageF> image = readExr(folder / "c.exr");
@@ -162,8 +162,8 @@ TEST(Srgb, ByteFollowsTheStandardCurve)
     EXPECT_EQ(srgbByte(7.0f), 255);
     EXPECT_EQ(srgbByte(-1.0f), 0);
     EXPECT_EQ(srgbByte(std::numeric_limits<float>::quiet_NaN()), 0);
-    EXPECT_EQ(srgbByte(0.002f), 7);          // linear part: 12.92 * 0.002 * 255 = 6.6
-    EXPECT_EQ(srgbByte(0.214041140f), 128);  // decodes from 0.5: 127.5 rounds up
+    EXPECT_EQ(srgbByte(0.002f), 7);         // linear part: 12.92 * 0.002 * 255 = 6.6
+    EXPECT_EQ(srgbByte(0.214041140f), 128); // decodes from 0.5: 127.5 rounds up
 }
 
 } // namespace

@@ -93,7 +93,10 @@ TEST(Picture, ShowsBrighterRedDarkerBlueAndEqualWhite)
     EXPECT_EQ(picture.width, 4 * 3 + 3 * 4u);
     EXPECT_EQ(picture.height, 1u);
     const auto pixel = [&](size_t x)
-    { return std::vector<int>(picture.rgb.begin() + std::ptrdiff_t(3 * x), picture.rgb.begin() + std::ptrdiff_t(3 * x + 3)); };
+    {
+        return std::vector<int>(picture.rgb.begin() + std::ptrdiff_t(3 * x),
+                                picture.rgb.begin() + std::ptrdiff_t(3 * x + 3));
+    };
     EXPECT_EQ(pixel(0), (std::vector<int>{188, 188, 188})); // sRGB of 0.5
     EXPECT_EQ(pixel(3), (std::vector<int>{128, 128, 128})); // the gap
     EXPECT_EQ(pixel(8), (std::vector<int>{255, 255, 255})); // test, 9 * 0.5

@@ -52,7 +52,8 @@ struct Glb
     {
         const json& description = content["accessors"][index];
         std::vector<T> values(description["count"].get<size_t>());
-        std::memcpy(values.data(), view(content["bufferViews"][description["bufferView"].get<size_t>()], values.size() * sizeof(T)),
+        std::memcpy(values.data(),
+                    view(content["bufferViews"][description["bufferView"].get<size_t>()], values.size() * sizeof(T)),
                     values.size() * sizeof(T));
         return values;
     }
@@ -76,8 +77,9 @@ std::vector<Part> parts(const Glb& glb)
         {
             const json& attributes = primitive["attributes"];
             const json& material = glb.content["materials"][primitive["material"].get<size_t>()];
-            result.push_back({mesh["name"], material.value("doubleSided", false), glb.accessor<Vec3>(attributes["POSITION"]),
-                              glb.accessor<Vec3>(attributes["NORMAL"]), glb.accessor<Vec2>(attributes["TEXCOORD_0"]),
+            result.push_back({mesh["name"], material.value("doubleSided", false),
+                              glb.accessor<Vec3>(attributes["POSITION"]), glb.accessor<Vec3>(attributes["NORMAL"]),
+                              glb.accessor<Vec2>(attributes["TEXCOORD_0"]),
                               glb.accessor<uint32_t>(primitive["indices"])});
         }
     }
@@ -100,7 +102,10 @@ protected:
     const Glb glb_{bytes_};
 };
 
-TEST_P(Scenes, SameBytesEveryTime) { EXPECT_EQ(GetParam().build().glb(), bytes_); }
+TEST_P(Scenes, SameBytesEveryTime)
+{
+    EXPECT_EQ(GetParam().build().glb(), bytes_);
+}
 
 TEST_P(Scenes, SaysWhereItComesFromAndNamesItsCameras)
 {
@@ -210,12 +215,16 @@ TEST_P(Scenes, TexturesDecode)
     }
 }
 
-TEST_P(Scenes, StaysUnderEightMegabytes) { EXPECT_LT(bytes_.size(), 8u << 20); }
+TEST_P(Scenes, StaysUnderEightMegabytes)
+{
+    EXPECT_LT(bytes_.size(), 8u << 20);
+}
 
 INSTANTIATE_TEST_SUITE_P(All, Scenes,
                          testing::Values(SceneCase{"cornell", cornellScene, 30, 100, 0, {"front"}},
                                          SceneCase{"caustics", causticsScene, 30000, 100000, 0, {"table"}},
-                                         SceneCase{"atrium", atriumScene, 50000, 100000, 13, {"hall", "gallery", "glass"}}),
+                                         SceneCase{
+                                             "atrium", atriumScene, 50000, 100000, 13, {"hall", "gallery", "glass"}}),
                          [](const auto& test) { return std::string(test.param.name); });
 
 /// Signed volume by the divergence theorem: right only where the mesh is closed and wound outwards.
@@ -224,7 +233,8 @@ double volume(const Mesh& mesh)
     double sum = 0;
     for (size_t i = 0; i < mesh.indices.size(); i += 3)
         sum += double(dot(mesh.positions[mesh.indices[i]],
-                          cross(mesh.positions[mesh.indices[i + 1]], mesh.positions[mesh.indices[i + 2]]))) / 6;
+                          cross(mesh.positions[mesh.indices[i + 1]], mesh.positions[mesh.indices[i + 2]]))) /
+               6;
     return sum;
 }
 

@@ -11,8 +11,8 @@ namespace
 {
 
 constexpr float kColorExponent = 0.7f;
-constexpr float kColorKnee = 0.4f;     // of the largest colour distance ...
-constexpr float kColorKneeTo = 0.95f;  // ... is shown as this error
+constexpr float kColorKnee = 0.4f;    // of the largest colour distance ...
+constexpr float kColorKneeTo = 0.95f; // ... is shown as this error
 constexpr float kInverseSqrt2 = 0.707106781f;
 
 using Plane = std::vector<float>; // [width * height]
@@ -27,10 +27,13 @@ Lanes load(const float* from)
     return lanes;
 }
 
-void store(Lanes lanes, float* to) { std::memcpy(to, &lanes, sizeof(lanes)); }
+void store(Lanes lanes, float* to)
+{
+    std::memcpy(to, &lanes, sizeof(lanes));
+}
 
-/// out[i] (+)= sum over taps of weights[tap] * inputs[tap][i]. Left to itself the compiler does not vectorise this well,
-/// and it is where the time goes: the sums of 16 neighbours stay in registers through all taps.
+/// out[i] (+)= sum over taps of weights[tap] * inputs[tap][i]. Left to itself the compiler does not vectorise this
+/// well, and it is where the time goes: the sums of 16 neighbours stay in registers through all taps.
 void weightedSum(const std::vector<const float*>& inputs, const Taps& taps, bool add, uint32_t count, float* out)
 {
     const size_t tap_count = taps.weights.size();
@@ -128,25 +131,27 @@ public:
     template <typename Shown>
     void raise(const ImageF& reference, const ImageF& test, const Shown& shown, std::vector<float>& error)
     {
-        parallelRows(height_, [&](uint32_t first, uint32_t last)
-        {
-            filterRows(reference, shown, first, last, reference_);
-            filterRows(test, shown, first, last, test_);
-        });
-        parallelRows(height_, [&](uint32_t first, uint32_t last)
-        {
-            FilteredRow a(width_), b(width_);
-            for (uint32_t y = first; y < last; ++y)
-            {
-                filterColumns(reference_, y, a);
-                filterColumns(test_, y, b);
-                for (uint32_t x = 0; x < width_; ++x)
-                {
-                    float& largest = error[size_t(y) * width_ + x];
-                    largest = std::max(largest, pixelError(a, b, x));
-                }
-            }
-        });
+        parallelRows(height_,
+                     [&](uint32_t first, uint32_t last)
+                     {
+                         filterRows(reference, shown, first, last, reference_);
+                         filterRows(test, shown, first, last, test_);
+                     });
+        parallelRows(height_,
+                     [&](uint32_t first, uint32_t last)
+                     {
+                         FilteredRow a(width_), b(width_);
+                         for (uint32_t y = first; y < last; ++y)
+                         {
+                             filterColumns(reference_, y, a);
+                             filterColumns(test_, y, b);
+                             for (uint32_t x = 0; x < width_; ++x)
+                             {
+                                 float& largest = error[size_t(y) * width_ + x];
+                                 largest = std::max(largest, pixelError(a, b, x));
+                             }
+                         }
+                     });
     }
 
 private:
@@ -231,10 +236,12 @@ private:
     float pixelError(const FilteredRow& a, const FilteredRow& b, uint32_t x) const
     {
         const float distance = std::pow(hyab({a.achromatic[x], a.red_green[x], a.blue_yellow[x]},
-                                             {b.achromatic[x], b.red_green[x], b.blue_yellow[x]}), kColorExponent);
+                                             {b.achromatic[x], b.red_green[x], b.blue_yellow[x]}),
+                                        kColorExponent);
         const float knee = kColorKnee * color_max_;
-        const float color = distance < knee ? distance * (kColorKneeTo / knee)
-                                            : kColorKneeTo + (distance - knee) / (color_max_ - knee) * (1 - kColorKneeTo);
+        const float color = distance < knee
+                                ? distance * (kColorKneeTo / knee)
+                                : kColorKneeTo + (distance - knee) / (color_max_ - knee) * (1 - kColorKneeTo);
         const float feature_distance =
             std::max(std::abs(a.edge_x[x] - b.edge_x[x]), std::abs(a.point_x[x] - b.point_x[x]));
         return std::pow(std::min(color, 1.0f), 1.0f - std::sqrt(kInverseSqrt2 * feature_distance));
@@ -268,7 +275,8 @@ FlipMap ldrFlip(const ImageF& reference, const ImageF& test, float pixels_per_de
     checkSizes(reference, test);
     FlipMap map{std::vector<float>(reference.pixelCount(), 0.0f), 0};
     Flip flip(reference.width, reference.height, pixels_per_degree);
-    flip.raise(reference, test, [](float v) { return std::clamp(v, 0.0f, 1.0f); }, map.error);
+    flip.raise(
+        reference, test, [](float v) { return std::clamp(v, 0.0f, 1.0f); }, map.error);
     setMean(map);
     return map;
 }
@@ -323,7 +331,8 @@ FlipMap hdrFlip(const ImageF& reference, const ImageF& test, const FlipExposures
     for (uint32_t i = 0; i < exposures.count; ++i)
     {
         const float scale = std::exp2(exposures.start + float(i) * step);
-        flip.raise(reference, test, [scale](float v) { return acesCurve(std::max(v, 0.0f) * scale); }, map.error);
+        flip.raise(
+            reference, test, [scale](float v) { return acesCurve(std::max(v, 0.0f) * scale); }, map.error);
     }
     setMean(map);
     return map;

@@ -1,6 +1,7 @@
 // FLIP: how strongly a viewer sees the difference when two pictures are alternated on a screen.
-// Andersson et al., "FLIP: A Difference Evaluator for Alternating Images", HPG 2020, and "Visualizing Errors in Rendered
-// High Dynamic Range Images", Eurographics 2021; constants and order of operations follow the authors' release 1.6.
+// Andersson et al., "FLIP: A Difference Evaluator for Alternating Images", HPG 2020, and "Visualizing Errors in
+// Rendered High Dynamic Range Images", Eurographics 2021; constants and order of operations follow the authors'
+// release 1.6.
 #pragma once
 #include "tools/image/image.h"
 
@@ -21,7 +22,8 @@ struct FlipExposures
     uint32_t count = 2; // evenly spaced, both ends included
 };
 
-/// LDR-FLIP of two images in linear light; values outside 0..1 are clamped. Both must have the same size, at least 1 x 1.
+/// LDR-FLIP of two images in linear light; values outside 0..1 are clamped. Both must have the same size, at least 1
+/// x 1.
 FlipMap ldrFlip(const ImageF& reference, const ImageF& test, float pixels_per_degree = kPixelsPerDegree);
 
 /// Exposures under which the ACES curve takes the brightest (start) and the median (stop) pixel of `reference` to 0.85.

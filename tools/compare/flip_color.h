@@ -31,7 +31,8 @@ inline Color relativeXyz(Color rgb)
             (1425312.0f * rgb.x + 8788810.0f * rgb.y + 70074185.0f * rgb.z) * (1.0f / 80288307.0f)};
 }
 
-/// Linearised CIELAB: opponent colour in which blurring is physically right. x: achromatic, y: red-green, z: blue-yellow.
+/// Linearised CIELAB: opponent colour in which blurring is physically right. x: achromatic, y: red-green, z:
+/// blue-yellow.
 inline Color ycxczFromRgb(Color rgb)
 {
     const Color v = relativeXyz(rgb);

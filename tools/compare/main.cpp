@@ -42,9 +42,10 @@ Result<ImageF> cropped(const ImageF& image, const std::vector<uint32_t>& crop)
     if (crop.empty())
         return image;
     if (crop[0] >= crop[2] || crop[1] >= crop[3] || crop[2] > image.width || crop[3] > image.height)
-        return Error{ExitCode::kUsage, fmt::format("--crop {},{},{},{} does not lie in the image of {} x {} pixels; give "
-                                                   "the left, top, right and bottom edge, the last two exclusive.",
-                                                   crop[0], crop[1], crop[2], crop[3], image.width, image.height)};
+        return Error{ExitCode::kUsage,
+                     fmt::format("--crop {},{},{},{} does not lie in the image of {} x {} pixels; give "
+                                 "the left, top, right and bottom edge, the last two exclusive.",
+                                 crop[0], crop[1], crop[2], crop[3], image.width, image.height)};
     ImageF part{crop[2] - crop[0], crop[3] - crop[1], {}};
     for (uint32_t y = crop[1]; y < crop[3]; ++y)
     {
@@ -86,7 +87,8 @@ std::string jsonText(const Report& report)
 std::string plainText(const Report& report)
 {
     const Metrics& m = report.metrics;
-    const auto rgb = [](const std::array<double, 3>& v) { return fmt::format("{:<11.6g} {:<11.6g} {:.6g}", v[0], v[1], v[2]); };
+    const auto rgb = [](const std::array<double, 3>& v)
+    { return fmt::format("{:<11.6g} {:<11.6g} {:.6g}", v[0], v[1], v[2]); };
     return fmt::format("size            {} x {}\n"
                        "non-finite      {} reference, {} test pixels (taken as black)\n"
                        "mean reference  {}\n"
@@ -131,10 +133,11 @@ int run(const Options& options)
     }
     auto& [reference, test] = images;
     if (reference.width != test.width || reference.height != test.height)
-        return fail(options.test, {ExitCode::kInvalid,
-                                   fmt::format("The image has {} x {} pixels but the reference {} has {} x {}; render both "
-                                               "in the same size.", test.width, test.height, options.reference,
-                                               reference.width, reference.height)});
+        return fail(options.test,
+                    {ExitCode::kInvalid,
+                     fmt::format("The image has {} x {} pixels but the reference {} has {} x {}; render both "
+                                 "in the same size.",
+                                 test.width, test.height, options.reference, reference.width, reference.height)});
     for (int i = 0; i < 2; ++i)
     {
         Result<ImageF> part = cropped(images[i], options.crop);
@@ -161,10 +164,11 @@ int run(const Options& options)
 int main(int argc, char** argv)
 {
     Options options;
-    CLI::App app{"Says how far the rendering TEST is from the rendering REFERENCE. Both are linear OpenEXR images of one "
-                 "size.\nExit codes: 0 done, 1 usage, 2 a file cannot be read or written, 3 not a matching image, "
-                 "4 out of memory, 5 unsupported image.",
-                 "lumicut-compare"};
+    CLI::App app{
+        "Says how far the rendering TEST is from the rendering REFERENCE. Both are linear OpenEXR images of one "
+        "size.\nExit codes: 0 done, 1 usage, 2 a file cannot be read or written, 3 not a matching image, "
+        "4 out of memory, 5 unsupported image.",
+        "lumicut-compare"};
     app.set_version_flag("--version", "lumicut-compare " LUMICUT_VERSION);
     app.add_option("REFERENCE", options.reference, "the image taken as right (.exr)")->required();
     app.add_option("TEST", options.test, "the image to judge (.exr)")->required();

@@ -10,7 +10,10 @@
 namespace
 {
 
-double square(double x) { return x * x; }
+double square(double x)
+{
+    return x * x;
+}
 
 void setMeans(const ImageF& reference, const ImageF& test, Metrics& metrics)
 {
@@ -59,7 +62,8 @@ void setBias(const ImageF& reference, const ImageF& test, Metrics& metrics)
     {
         for (uint32_t x = 0; x < reference.width; ++x)
         {
-            const size_t block = uint64_t(y) * rows / reference.height * columns + uint64_t(x) * columns / reference.width;
+            const size_t block =
+                uint64_t(y) * rows / reference.height * columns + uint64_t(x) * columns / reference.width;
             const size_t pixel = 3 * (size_t(y) * reference.width + x);
             for (size_t i = 0; i < 3; ++i)
                 sums[block] += double(test.rgb[pixel + i]) - double(reference.rgb[pixel + i]);

@@ -6,8 +6,8 @@
 #include <thread>
 #include <vector>
 
-/// Calls `rows(first, last)` on every band of rows in 0..row_count-1, several bands at a time; returns when all are done.
-/// Bands are disjoint; `rows` must not throw and must write nothing that two bands share.
+/// Calls `rows(first, last)` on every band of rows in 0..row_count-1, several bands at a time; returns when all are
+/// done. Bands are disjoint; `rows` must not throw and must write nothing that two bands share.
 template <typename Rows>
 void parallelRows(uint32_t row_count, const Rows& rows)
 {

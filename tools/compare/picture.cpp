@@ -36,8 +36,9 @@ Bytes difference(float reference, float test, float floor)
 /// Dark to bright through purple and orange, even in lightness; straight lines between nine stops.
 Bytes flipColor(float error)
 {
-    static constexpr float kStops[9][3] = {{0, 0, 4},       {28, 16, 68},    {79, 18, 123}, {129, 37, 129}, {181, 54, 122},
-                                           {229, 80, 100},  {251, 135, 97},  {254, 194, 135}, {252, 253, 191}};
+    static constexpr float kStops[9][3] = {{0, 0, 4},      {28, 16, 68},    {79, 18, 123},
+                                           {129, 37, 129}, {181, 54, 122},  {229, 80, 100},
+                                           {251, 135, 97}, {254, 194, 135}, {252, 253, 191}};
     const float position = std::clamp(error, 0.0f, 1.0f) * 8.0f;
     const int stop = std::min(int(position), 7);
     const float t = position - float(stop);

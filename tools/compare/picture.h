@@ -14,5 +14,6 @@ struct Picture
 
 /// Reference | test | difference, and the FLIP map where given, side by side. The first two are exposed by `scale` and
 /// sRGB-encoded. Difference: (t - r) / (r + 1 % of the reference's mean) of the channel means; white where equal, red
-/// where the test is brighter, blue where darker, full at 25 %. FLIP: black (none) over purple and orange to yellow (1).
+/// where the test is brighter, blue where darker, full at 25 %. FLIP: black (none) over purple and orange to yellow
+/// (1).
 Picture sideBySide(const ImageF& reference, const ImageF& test, float scale, const std::optional<FlipMap>& flip);

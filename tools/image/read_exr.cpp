@@ -50,8 +50,10 @@ Result<std::vector<std::string>> pickChannels(const Imf::ChannelList& channels)
     else if (channels.findChannel("Y") && !channels.findChannel("RY") && !channels.findChannel("BY"))
         picked = {"Y", "Y", "Y"};
     else
-        return Error{ExitCode::kUnsupported, fmt::format("The image has the channels {}; channels R, G and B, or Y alone, "
-                                                         "are needed.", channelNames(channels))};
+        return Error{ExitCode::kUnsupported,
+                     fmt::format("The image has the channels {}; channels R, G and B, or Y alone, "
+                                 "are needed.",
+                                 channelNames(channels))};
     for (const std::string& name : picked)
     {
         const Imf::Channel* channel = channels.findChannel(name);

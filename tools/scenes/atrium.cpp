@@ -1,5 +1,6 @@
-// The hall: x in +-6, z in +-12, y in 0..10. Colonnades at x = +-3.25 carry a gallery at 4.75 m over vaulted aisles; a shaft
-// in the roof lets in the sun. One long side is built at x > 0 and used twice, turned by half a circle.
+// The hall: x in +-6, z in +-12, y in 0..10. Colonnades at x = +-3.25 carry a gallery at 4.75 m over vaulted aisles; a
+// shaft in the roof lets in the sun. One long side is built at x > 0 and used twice, turned by half a circle.
+#include "tools/scenes/atrium_materials.h"
 #include "tools/scenes/atrium_parts.h"
 #include "tools/scenes/scenes.h"
 
@@ -12,108 +13,12 @@ constexpr float kPi = std::numbers::pi_v<float>;
 constexpr float kHalfLength = 12, kHalfWidth = 6, kRoof = 10;
 constexpr float kBay = 3;
 constexpr int kBayCount = 8;
-constexpr float kArcade = 3.0f;   // x of the arcade's front
+constexpr float kArcade = 3.0f; // x of the arcade's front
 constexpr float kArcadeDepth = 0.5f;
 constexpr float kSpring = 2.9f, kGallery = 4.75f, kUpperSpring = 7.3f, kUpperCeiling = 9.3f;
-constexpr float kFoot = 0.02f;    // how far walls reach into what carries them
+constexpr float kFoot = 0.02f;             // how far walls reach into what carries them
 constexpr Vec3 kSun{0.25f, -1.0f, -0.36f}; // the way its light travels
 constexpr float kSkyHalfX = 2.0f, kSkyHalfZ = 6.8f, kSkyHeight = 5.0f;
-
-struct Materials
-{
-    uint32_t tiles, brick, plaster, limestone, planks, cloth[3];
-    uint32_t bronze, gold, mirror, glass, pane, water, marble, sky, lamp;
-};
-
-struct TextureUse
-{
-    uint32_t color, normal;
-    std::optional<uint32_t> roughness;
-};
-
-TextureUse addTextures(GltfWriter& gltf, const std::string& name, const SurfaceTextures& textures)
-{
-    TextureUse use{gltf.addTexture(name, textures.color), gltf.addTexture(name + " normal", textures.normal), std::nullopt};
-    if (textures.roughness.size != 0)
-        use.roughness = gltf.addTexture(name + " roughness", textures.roughness);
-    return use;
-}
-
-uint32_t addTextured(GltfWriter& gltf, const std::string& name, const TextureUse& use, float roughness, float normal_scale,
-                     Vec3 tint = {1, 1, 1}, bool double_sided = false)
-{
-    MaterialDescription material;
-    material.name = name;
-    material.base_color = tint;
-    material.roughness = roughness;
-    material.base_color_texture = use.color;
-    material.normal_texture = use.normal;
-    material.metallic_roughness_texture = use.roughness;
-    material.normal_scale = normal_scale;
-    material.double_sided = double_sided;
-    if (use.roughness)
-        material.metallic = 1; // times the texture's 0
-    return gltf.addMaterial(material);
-}
-
-uint32_t addPlain(GltfWriter& gltf, const std::string& name, Vec3 color, float metallic, float roughness)
-{
-    MaterialDescription material;
-    material.name = name;
-    material.base_color = color;
-    material.metallic = metallic;
-    material.roughness = roughness;
-    return gltf.addMaterial(material);
-}
-
-uint32_t addGlowing(GltfWriter& gltf, const std::string& name, Vec3 radiance)
-{
-    MaterialDescription material;
-    material.name = name;
-    material.base_color = {0, 0, 0};
-    material.lambert = true;
-    material.emission = radiance;
-    return gltf.addMaterial(material);
-}
-
-Materials addMaterials(GltfWriter& gltf)
-{
-    Materials m{};
-    m.tiles = addTextured(gltf, "marble tiles", addTextures(gltf, "marble tiles", marbleTiles(1024)), 1, 1);
-    m.brick = addTextured(gltf, "brick", addTextures(gltf, "brick", bricks(512)), 0.9f, 1);
-    m.plaster = addTextured(gltf, "plaster", addTextures(gltf, "plaster", plaster(512)), 0.95f, 1);
-    m.limestone = addTextured(gltf, "limestone", addTextures(gltf, "limestone", limestone(512)), 0.8f, 1);
-    m.planks = addTextured(gltf, "planks", addTextures(gltf, "planks", planks(512)), 0.7f, 1);
-    const TextureUse weave = addTextures(gltf, "woven cloth", wovenCloth(512));
-    const Vec3 dyes[3] = {{0.72f, 0.045f, 0.035f}, {0.05f, 0.36f, 0.10f}, {0.05f, 0.13f, 0.58f}};
-    const char* const names[3] = {"red cloth", "green cloth", "blue cloth"};
-    for (int i = 0; i < 3; ++i)
-        m.cloth[i] = addTextured(gltf, names[i], weave, 0.9f, 0.6f, dyes[i], true);
-    m.bronze = addPlain(gltf, "bronze", {0.42f, 0.28f, 0.15f}, 1, 0.35f);
-    m.gold = addPlain(gltf, "polished gold", {1.0f, 0.77f, 0.34f}, 1, 0.08f);
-    m.mirror = addPlain(gltf, "mirror", {0.94f, 0.95f, 0.95f}, 1, 0);
-    m.water = addPlain(gltf, "dark water", {0.015f, 0.035f, 0.04f}, 0, 0.02f);
-    m.marble = addPlain(gltf, "white marble", {0.68f, 0.66f, 0.62f}, 0, 0.3f);
-
-    MaterialDescription glass;
-    glass.name = "glass";
-    glass.roughness = 0;
-    glass.transmission = 1;
-    glass.thickness = 0.3f;
-    glass.attenuation_color = Vec3{0.80f, 0.93f, 0.90f};
-    glass.attenuation_distance = 0.5f;
-    m.glass = gltf.addMaterial(glass);
-    MaterialDescription pane;
-    pane.name = "tinted pane";
-    pane.base_color = {0.62f, 0.86f, 0.80f};
-    pane.roughness = 0;
-    pane.transmission = 1;
-    m.pane = gltf.addMaterial(pane);
-
-    m.sky = addGlowing(gltf, "sky", {2.6f, 3.3f, 4.4f});
-    m.lamp = addGlowing(gltf, "lamp", {190, 112, 48});
-    return m;
-}
 
 /// A wall arcade whose front faces -x at x = kArcade: bay after bay along z.
 Placement bayPlacement(int bay, float x, float y)
@@ -121,15 +26,28 @@ Placement bayPlacement(int bay, float x, float y)
     return turned(-0.5f * kPi, {x, y, -kHalfLength + kBay * (float(bay) + 0.5f)});
 }
 
-float columnZ(int i) { return -kHalfLength + kBay * float(i); }
+float columnZ(int i)
+{
+    return -kHalfLength + kBay * float(i);
+}
 
-void addArcades(GltfWriter& gltf, const Materials& m, float turn)
+void addArcades(GltfWriter& gltf, const AtriumMaterials& m, float turn)
 {
     const float radius = 1.2f, upper_radius = 1.24f;
     const Mesh lower_bay = archBay(kBay, kGallery - kSpring, radius, kHalfWidth - kArcade, kFoot, false, 20);
     const Mesh upper_bay = archBay(kBay, kRoof - kUpperSpring, upper_radius, kArcadeDepth, kFoot, true, 20);
-    const Mesh lower_moulding = archMoulding({{radius + 0.005f, -0.02f}, {radius + 0.005f, 0.03f}, {radius + 0.10f, 0.03f}, {radius + 0.11f, 0.055f}, {radius + 0.20f, 0.055f}, {radius + 0.23f, -0.01f}}, 20);
-    const Mesh upper_moulding = archMoulding({{upper_radius + 0.005f, -0.02f}, {upper_radius + 0.005f, 0.03f}, {upper_radius + 0.12f, 0.03f}, {upper_radius + 0.16f, -0.01f}}, 20);
+    const Mesh lower_moulding = archMoulding({{radius + 0.005f, -0.02f},
+                                              {radius + 0.005f, 0.03f},
+                                              {radius + 0.10f, 0.03f},
+                                              {radius + 0.11f, 0.055f},
+                                              {radius + 0.20f, 0.055f},
+                                              {radius + 0.23f, -0.01f}},
+                                             20);
+    const Mesh upper_moulding = archMoulding({{upper_radius + 0.005f, -0.02f},
+                                              {upper_radius + 0.005f, 0.03f},
+                                              {upper_radius + 0.12f, 0.03f},
+                                              {upper_radius + 0.16f, -0.01f}},
+                                             20);
     Mesh walls, mouldings;
     for (int bay = 0; bay < kBayCount; ++bay)
     {
@@ -145,8 +63,10 @@ void addArcades(GltfWriter& gltf, const Materials& m, float turn)
         const float z0 = std::max(columnZ(i) - half, -kHalfLength), z1 = std::min(columnZ(i) + half, kHalfLength);
         addQuad(walls, {kArcade, kSpring - kFoot, z0}, {kHalfWidth - kArcade, 0, 0}, {0, 0, z1 - z0});
         addQuad(walls, {kArcade, kUpperSpring - kFoot, z0}, {kArcadeDepth, 0, 0}, {0, 0, z1 - z0});
-        mouldings.add(box({kHalfWidth - 0.16f, -0.01f, columnZ(i) - 0.26f}, {kHalfWidth + 0.05f, kSpring - 0.18f, columnZ(i) + 0.26f}, 0.015f));
-        mouldings.add(box({kHalfWidth - 0.20f, kSpring - 0.18f, columnZ(i) - 0.29f}, {kHalfWidth + 0.05f, kSpring, columnZ(i) + 0.29f}, 0.015f));
+        mouldings.add(box({kHalfWidth - 0.16f, -0.01f, columnZ(i) - 0.26f},
+                          {kHalfWidth + 0.05f, kSpring - 0.18f, columnZ(i) + 0.26f}, 0.015f));
+        mouldings.add(box({kHalfWidth - 0.20f, kSpring - 0.18f, columnZ(i) - 0.29f},
+                          {kHalfWidth + 0.05f, kSpring, columnZ(i) + 0.29f}, 0.015f));
     }
     for (float z : {-kHalfLength, kHalfLength}) // responds where the arcade meets the end walls
     {
@@ -154,7 +74,8 @@ void addArcades(GltfWriter& gltf, const Materials& m, float turn)
         const auto respond = [&](float y0, float y1, float depth, float spread)
         {
             const float a = z - 0.05f * inside, b = z + depth * inside;
-            mouldings.add(box({kArcade - spread, y0, std::min(a, b)}, {kArcade + kArcadeDepth + spread, y1, std::max(a, b)}, 0.012f));
+            mouldings.add(box({kArcade - spread, y0, std::min(a, b)},
+                              {kArcade + kArcadeDepth + spread, y1, std::max(a, b)}, 0.012f));
         };
         respond(-0.01f, kSpring - 0.16f, 0.27f, 0.0f);
         respond(kSpring - 0.16f, kSpring, 0.32f, 0.05f);
@@ -166,19 +87,26 @@ void addArcades(GltfWriter& gltf, const Materials& m, float turn)
     gltf.addNode("mouldings", gltf.addMesh("mouldings", mouldings, m.limestone), {}, turn);
 }
 
-void addGallery(GltfWriter& gltf, const Materials& m, float turn)
+void addGallery(GltfWriter& gltf, const AtriumMaterials& m, float turn)
 {
     Mesh stone;
     // The string course below the gallery and the cornice below the roof.
-    for (const auto& [y0, y1, out] : {std::tuple{4.42f, 4.52f, 0.06f}, {4.52f, 4.68f, 0.12f}, {4.68f, 4.79f, 0.19f},
-                                      {9.42f, 9.55f, 0.08f}, {9.55f, 9.75f, 0.16f}, {9.75f, 10.05f, 0.24f}})
+    for (const auto& [y0, y1, out] : {std::tuple{4.42f, 4.52f, 0.06f},
+                                      {4.52f, 4.68f, 0.12f},
+                                      {4.68f, 4.79f, 0.19f},
+                                      {9.42f, 9.55f, 0.08f},
+                                      {9.55f, 9.75f, 0.16f},
+                                      {9.75f, 10.05f, 0.24f}})
         stone.add(box({kArcade - out, y0, -kHalfLength - 0.05f}, {kArcade + 0.03f, y1, kHalfLength + 0.05f}, 0.015f));
     // Balustrade: plinth, rail, and piers in front of the columns.
     const float front = kArcade - 0.13f, back = kArcade + 0.05f;
-    stone.add(box({front, kGallery + 0.03f, -kHalfLength - 0.05f}, {back, kGallery + 0.13f, kHalfLength + 0.05f}, 0.012f));
-    stone.add(box({front - 0.02f, kGallery + 0.83f, -kHalfLength - 0.05f}, {back + 0.02f, kGallery + 0.94f, kHalfLength + 0.05f}, 0.02f));
+    stone.add(
+        box({front, kGallery + 0.03f, -kHalfLength - 0.05f}, {back, kGallery + 0.13f, kHalfLength + 0.05f}, 0.012f));
+    stone.add(box({front - 0.02f, kGallery + 0.83f, -kHalfLength - 0.05f},
+                  {back + 0.02f, kGallery + 0.94f, kHalfLength + 0.05f}, 0.02f));
     for (int i = 1; i < kBayCount; ++i)
-        stone.add(box({front - 0.01f, kGallery + 0.04f, columnZ(i) - 0.14f}, {back + 0.01f, kGallery + 0.97f, columnZ(i) + 0.14f}, 0.015f));
+        stone.add(box({front - 0.01f, kGallery + 0.04f, columnZ(i) - 0.14f},
+                      {back + 0.01f, kGallery + 0.97f, columnZ(i) + 0.14f}, 0.015f));
     gltf.addNode("cornices", gltf.addMesh("cornices", stone, m.limestone), {}, turn);
 
     Mesh row;
@@ -191,18 +119,20 @@ void addGallery(GltfWriter& gltf, const Materials& m, float turn)
 
     Mesh floor, ceiling;
     addQuad(floor, {kArcade, kGallery, kHalfLength}, {kHalfWidth - kArcade, 0, 0}, {0, 0, -2 * kHalfLength});
-    addQuad(ceiling, {kArcade + kArcadeDepth, kUpperCeiling, -kHalfLength}, {kHalfWidth - kArcade - kArcadeDepth, 0, 0}, {0, 0, 2 * kHalfLength});
+    addQuad(ceiling, {kArcade + kArcadeDepth, kUpperCeiling, -kHalfLength}, {kHalfWidth - kArcade - kArcadeDepth, 0, 0},
+            {0, 0, 2 * kHalfLength});
     floor.scaleUvs(0.5f);
     gltf.addNode("gallery floor", gltf.addMesh("gallery floor", floor, m.tiles), {}, turn);
     for (int i = 0; i <= 2 * kBayCount; ++i) // joists
     {
         const float z = -kHalfLength + 1.5f * float(i);
-        ceiling.add(box({kArcade + kArcadeDepth - 0.02f, kUpperCeiling - 0.16f, z - 0.07f}, {kHalfWidth + 0.05f, kUpperCeiling + 0.02f, z + 0.07f}, 0.01f));
+        ceiling.add(box({kArcade + kArcadeDepth - 0.02f, kUpperCeiling - 0.16f, z - 0.07f},
+                        {kHalfWidth + 0.05f, kUpperCeiling + 0.02f, z + 0.07f}, 0.01f));
     }
     gltf.addNode("gallery ceiling", gltf.addMesh("gallery ceiling", ceiling, m.planks), {}, turn);
 }
 
-void addColumns(GltfWriter& gltf, const Materials& m)
+void addColumns(GltfWriter& gltf, const AtriumMaterials& m)
 {
     const uint32_t lower = gltf.addMesh("column", lowerColumn(kSpring), m.limestone);
     const uint32_t upper = gltf.addMesh("gallery column", upperColumn(kUpperSpring - kGallery), m.limestone);
@@ -217,7 +147,7 @@ void addColumns(GltfWriter& gltf, const Materials& m)
     }
 }
 
-void addShell(GltfWriter& gltf, const Materials& m)
+void addShell(GltfWriter& gltf, const AtriumMaterials& m)
 {
     Mesh floor;
     addQuad(floor, {-kHalfWidth, 0, kHalfLength}, {2 * kHalfWidth, 0, 0}, {0, 0, -2 * kHalfLength});
@@ -256,18 +186,22 @@ void addShell(GltfWriter& gltf, const Materials& m)
     gltf.add("outer skin", skin, m.plaster);
 }
 
-void addRoof(GltfWriter& gltf, const Materials& m)
+void addRoof(GltfWriter& gltf, const AtriumMaterials& m)
 {
     Mesh planks;
-    const auto ceiling = [&](float x0, float x1, float z0, float z1) { addQuad(planks, {x0, kRoof, z0}, {x1 - x0, 0, 0}, {0, 0, z1 - z0}); };
+    const auto ceiling = [&](float x0, float x1, float z0, float z1) {
+        addQuad(planks, {x0, kRoof, z0}, {x1 - x0, 0, 0}, {0, 0, z1 - z0});
+    };
     ceiling(-kHalfWidth, kHalfWidth, -kHalfLength, -kSkyHalfZ);
     ceiling(-kHalfWidth, kHalfWidth, kSkyHalfZ, kHalfLength);
     ceiling(-kHalfWidth, -kSkyHalfX, -kSkyHalfZ, kSkyHalfZ);
     ceiling(kSkyHalfX, kHalfWidth, -kSkyHalfZ, kSkyHalfZ);
     for (int i = 1; i < kBayCount; ++i) // tie beams over every column
-        planks.add(box({-kArcade - 0.05f, kRoof - 0.34f, columnZ(i) - 0.13f}, {kArcade + 0.05f, kRoof - 0.02f, columnZ(i) + 0.13f}, 0.02f));
+        planks.add(box({-kArcade - 0.05f, kRoof - 0.34f, columnZ(i) - 0.13f},
+                       {kArcade + 0.05f, kRoof - 0.02f, columnZ(i) + 0.13f}, 0.02f));
     for (float side : {-1.0f, 1.0f}) // and the trimmers of the opening
-        planks.add(box({side * kSkyHalfX - (side < 0 ? 0.18f : 0.0f), kRoof - 0.22f, -kSkyHalfZ - 0.18f}, {side * kSkyHalfX + (side > 0 ? 0.18f : 0.0f), kRoof + 0.06f, kSkyHalfZ + 0.18f}, 0.015f));
+        planks.add(box({side * kSkyHalfX - (side < 0 ? 0.18f : 0.0f), kRoof - 0.22f, -kSkyHalfZ - 0.18f},
+                       {side * kSkyHalfX + (side > 0 ? 0.18f : 0.0f), kRoof + 0.06f, kSkyHalfZ + 0.18f}, 0.015f));
     gltf.add("roof", planks, m.planks);
 
     // The shaft follows the sun's direction, so that it shades nothing; its glowing walls stand in for the sky.
@@ -283,7 +217,7 @@ void addRoof(GltfWriter& gltf, const Materials& m)
     gltf.addSun("sun", kSun, {1.0f, 0.91f, 0.76f}, 25);
 }
 
-void addBanners(GltfWriter& gltf, const Materials& m)
+void addBanners(GltfWriter& gltf, const AtriumMaterials& m)
 {
     Mesh rods;
     const auto hang = [&](int color, float width, float drop, Placement placement, float phase)
@@ -291,7 +225,15 @@ void addBanners(GltfWriter& gltf, const Materials& m)
         Mesh cloth;
         cloth.add(banner(width, drop, 0.07f, phase), placement);
         gltf.add("banner", cloth, m.cloth[color]);
-        const Mesh rod = lathe({{0, -0.5f * width - 0.12f}, {0.035f, -0.5f * width - 0.12f}, {0.035f, -0.5f * width - 0.06f}, {0.018f, -0.5f * width - 0.05f}, {0.018f, 0.5f * width + 0.05f}, {0.035f, 0.5f * width + 0.06f}, {0.035f, 0.5f * width + 0.12f}, {0, 0.5f * width + 0.12f}}, 12);
+        const Mesh rod = lathe({{0, -0.5f * width - 0.12f},
+                                {0.035f, -0.5f * width - 0.12f},
+                                {0.035f, -0.5f * width - 0.06f},
+                                {0.018f, -0.5f * width - 0.05f},
+                                {0.018f, 0.5f * width + 0.05f},
+                                {0.035f, 0.5f * width + 0.06f},
+                                {0.035f, 0.5f * width + 0.12f},
+                                {0, 0.5f * width + 0.12f}},
+                               12);
         Placement lying = placement; // the rod's axis along the cloth's x
         lying.y_axis = placement.x_axis;
         lying.x_axis = -placement.y_axis;
@@ -314,7 +256,7 @@ void addBanners(GltfWriter& gltf, const Materials& m)
     gltf.add("banner rods", rods, m.bronze);
 }
 
-void addLanterns(GltfWriter& gltf, const Materials& m)
+void addLanterns(GltfWriter& gltf, const AtriumMaterials& m)
 {
     const float vault = kSpring + 1.2f;
     const Vec3 places[2] = {{-4.6f, 2.75f, 1.5f}, {4.6f, 2.75f, -7.5f}};
@@ -328,7 +270,7 @@ void addLanterns(GltfWriter& gltf, const Materials& m)
     gltf.add("lamps", lamps, m.lamp);
 }
 
-void addMirror(GltfWriter& gltf, const Materials& m)
+void addMirror(GltfWriter& gltf, const AtriumMaterials& m)
 {
     const float width = 2.5f, height = 3.1f, z = -kHalfLength;
     Mesh border, glass;
@@ -351,16 +293,21 @@ void addMirror(GltfWriter& gltf, const Materials& m)
     for (float end : {-1.0f, 1.0f}) // string course and cornice go on round the ends
     {
         const float wall = end * kHalfLength;
-        for (const auto& [y0, y1, out] : {std::tuple{4.42f, 4.52f, 0.06f}, {4.52f, 4.68f, 0.12f}, {4.68f, 4.79f, 0.19f}, {9.55f, 9.75f, 0.12f}, {9.75f, 10.05f, 0.2f}})
+        for (const auto& [y0, y1, out] : {std::tuple{4.42f, 4.52f, 0.06f},
+                                          {4.52f, 4.68f, 0.12f},
+                                          {4.68f, 4.79f, 0.19f},
+                                          {9.55f, 9.75f, 0.12f},
+                                          {9.75f, 10.05f, 0.2f}})
         {
             const float a = wall + 0.05f * end, b = wall - out * end;
-            stone.add(box({-kArcade - 0.01f, y0 - 0.003f, std::min(a, b)}, {kArcade + 0.01f, y1 - 0.003f, std::max(a, b)}, 0.015f));
+            stone.add(box({-kArcade - 0.01f, y0 - 0.003f, std::min(a, b)},
+                          {kArcade + 0.01f, y1 - 0.003f, std::max(a, b)}, 0.015f));
         }
     }
     gltf.add("end walls' stonework", stone, m.limestone);
 }
 
-void addFurniture(GltfWriter& gltf, const Materials& m)
+void addFurniture(GltfWriter& gltf, const AtriumMaterials& m)
 {
     constexpr float kHair = 1e-3f; // things stand this far above what carries them
     Mesh stone, gold, ball, cup, water;
@@ -402,7 +349,7 @@ void addFurniture(GltfWriter& gltf, const Materials& m)
 GltfWriter atriumScene()
 {
     GltfWriter gltf;
-    const Materials m = addMaterials(gltf);
+    const AtriumMaterials m = addAtriumMaterials(gltf);
     addShell(gltf, m);
     addRoof(gltf, m);
     for (float turn : {0.0f, kPi})
@@ -416,7 +363,7 @@ GltfWriter atriumScene()
     addMirror(gltf, m);
     addFurniture(gltf, m);
     gltf.addCamera("hall", {-0.5f, 1.65f, 9.4f}, {0.12f, 3.05f, -4.0f}, 0.96f);
-    gltf.addCamera("gallery", {-4.6f, 6.5f, 9.8f}, {1.6f, 2.6f, -3.0f}, 0.95f);
+    gltf.addCamera("gallery", {-2.85f, 6.45f, 7.7f}, {1.7f, 1.3f, -2.2f}, 1.0f);
     gltf.addCamera("glass", {0.35f, 1.45f, -7.2f}, {-0.25f, 1.35f, -12.0f}, 0.80f);
     return gltf;
 }

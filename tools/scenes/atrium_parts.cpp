@@ -56,22 +56,33 @@ Mesh upperColumn(float height)
 
 Mesh baluster()
 {
-    return lathe({{0.055f, 0}, {0.055f, 0.06f}, {0.035f, 0.08f}, {0.06f, 0.20f}, {0.062f, 0.26f}, {0.03f, 0.45f},
-                  {0.028f, 0.60f}, {0.055f, 0.65f}, {0.055f, 0.72f}}, 8);
+    return lathe({{0.055f, 0},
+                  {0.055f, 0.06f},
+                  {0.035f, 0.08f},
+                  {0.06f, 0.20f},
+                  {0.062f, 0.26f},
+                  {0.03f, 0.45f},
+                  {0.028f, 0.60f},
+                  {0.055f, 0.65f},
+                  {0.055f, 0.72f}},
+                 8);
 }
 
 Mesh banner(float width, float drop, float fold, float phase)
 {
-    return sheet(26, 32, {1, 1}, [=](float s, float t)
-    {
-        const float down = 1 - t; // 0 at the rod
-        const float waves = std::sin(2 * kPi * (2.5f * s + phase) + 0.9f * std::sin(3.0f * down + phase * 7));
-        const float ripple = std::sin(2 * kPi * (5.3f * s - 0.4f * down) + phase * 11);
-        const float depth = fold * (0.25f + 0.75f * down) * (waves + 0.25f * ripple);
-        const float swing = 0.04f * std::sin(2.4f * down + phase * 5) * down;
-        const float gather = 1 - 0.06f * down * (1 + 0.5f * std::sin(4 * down + phase));
-        return Vec3{(s - 0.5f) * width * gather, -drop * down + 0.02f * std::cos(2 * kPi * (2.5f * s + phase)) * down, depth + swing};
-    });
+    return sheet(26, 32, {1, 1},
+                 [=](float s, float t)
+                 {
+                     const float down = 1 - t; // 0 at the rod
+                     const float waves =
+                         std::sin(2 * kPi * (2.5f * s + phase) + 0.9f * std::sin(3.0f * down + phase * 7));
+                     const float ripple = std::sin(2 * kPi * (5.3f * s - 0.4f * down) + phase * 11);
+                     const float depth = fold * (0.25f + 0.75f * down) * (waves + 0.25f * ripple);
+                     const float swing = 0.04f * std::sin(2.4f * down + phase * 5) * down;
+                     const float gather = 1 - 0.06f * down * (1 + 0.5f * std::sin(4 * down + phase));
+                     return Vec3{(s - 0.5f) * width * gather,
+                                 -drop * down + 0.02f * std::cos(2 * kPi * (2.5f * s + phase)) * down, depth + swing};
+                 });
 }
 
 Mesh pedestal(float height)
@@ -91,15 +102,36 @@ Mesh urn()
         const float belly = std::sin(kPi * std::pow(t, 0.8f));
         profile.push_back({0.055f + 0.15f * belly + 0.02f * t, 0.09f + 0.46f * t});
     }
-    profile.insert(profile.end(), {{0.085f, 0.58f}, {0.11f, 0.61f}, {0.115f, 0.615f}, {0.11f, 0.62f}, {0.09f, 0.60f}, {0.06f, 0.55f}, {0, 0.54f}});
+    profile.insert(profile.end(), {{0.085f, 0.58f},
+                                   {0.11f, 0.61f},
+                                   {0.115f, 0.615f},
+                                   {0.11f, 0.62f},
+                                   {0.09f, 0.60f},
+                                   {0.06f, 0.55f},
+                                   {0, 0.54f}});
     return lathe(profile, 48);
 }
 
 Mesh goblet()
 {
-    return lathe({{0, 0.001f}, {0.12f, 0.001f}, {0.13f, 0.012f}, {0.12f, 0.02f}, {0.03f, 0.05f}, {0.022f, 0.10f}, {0.03f, 0.17f},
-                  {0.09f, 0.22f}, {0.13f, 0.30f}, {0.145f, 0.40f}, {0.14f, 0.50f}, {0.134f, 0.505f}, {0.128f, 0.50f}, {0.132f, 0.40f},
-                  {0.117f, 0.31f}, {0.08f, 0.245f}, {0, 0.215f}}, 64);
+    return lathe({{0, 0.001f},
+                  {0.12f, 0.001f},
+                  {0.13f, 0.012f},
+                  {0.12f, 0.02f},
+                  {0.03f, 0.05f},
+                  {0.022f, 0.10f},
+                  {0.03f, 0.17f},
+                  {0.09f, 0.22f},
+                  {0.13f, 0.30f},
+                  {0.145f, 0.40f},
+                  {0.14f, 0.50f},
+                  {0.134f, 0.505f},
+                  {0.128f, 0.50f},
+                  {0.132f, 0.40f},
+                  {0.117f, 0.31f},
+                  {0.08f, 0.245f},
+                  {0, 0.215f}},
+                 64);
 }
 
 Mesh lanternFrame(float rod)
@@ -128,7 +160,16 @@ Mesh frame(float width, float height, float bar, float depth)
 
 Mesh basin(float radius)
 {
-    return lathe({{radius + 0.10f, 0}, {radius + 0.10f, 0.08f}, {radius + 0.06f, 0.10f}, {radius + 0.03f, 0.34f}, {radius + 0.07f, 0.40f},
-                  {radius + 0.09f, 0.42f}, {radius + 0.09f, 0.48f}, {radius + 0.07f, 0.50f}, {radius - 0.07f, 0.50f}, {radius - 0.09f, 0.48f},
-                  {radius - 0.10f, 0.30f}}, 48);
+    return lathe({{radius + 0.10f, 0},
+                  {radius + 0.10f, 0.08f},
+                  {radius + 0.06f, 0.10f},
+                  {radius + 0.03f, 0.34f},
+                  {radius + 0.07f, 0.40f},
+                  {radius + 0.09f, 0.42f},
+                  {radius + 0.09f, 0.48f},
+                  {radius + 0.07f, 0.50f},
+                  {radius - 0.07f, 0.50f},
+                  {radius - 0.09f, 0.48f},
+                  {radius - 0.10f, 0.30f}},
+                 48);
 }

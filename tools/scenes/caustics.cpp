@@ -55,8 +55,10 @@ GltfWriter causticsScene()
     // A band bent to a ring: its inside draws the cardioid.
     std::vector<Vec2> band;
     constexpr float kRing = 0.15f, kHalfWidth = 0.008f, kHeight = 0.07f, kRound = 0.004f;
-    const Vec2 centers[4] = {{kRing + kHalfWidth - kRound, kHeight - kRound}, {kRing - kHalfWidth + kRound, kHeight - kRound},
-                             {kRing - kHalfWidth + kRound, kRound}, {kRing + kHalfWidth - kRound, kRound}};
+    const Vec2 centers[4] = {{kRing + kHalfWidth - kRound, kHeight - kRound},
+                             {kRing - kHalfWidth + kRound, kHeight - kRound},
+                             {kRing - kHalfWidth + kRound, kRound},
+                             {kRing + kHalfWidth - kRound, kRound}};
     for (int i = 0; i < 4; ++i)
     {
         for (int step = 0; step <= 8; ++step)

@@ -32,8 +32,9 @@ GltfWriter cornellScene()
     addQuad(room, {-0.5f, 0, -0.5f}, {1, 0, 0}, {0, 1, 0});
     // The ceiling is a frame of four around the lamp, so that nothing overlaps.
     constexpr float kHalfX = 0.12f, kHalfZ = 0.10f;
-    const auto ceiling = [](Mesh& mesh, float x0, float x1, float z0, float z1)
-    { addQuad(mesh, {x0, 1, z0}, {x1 - x0, 0, 0}, {0, 0, z1 - z0}); };
+    const auto ceiling = [](Mesh& mesh, float x0, float x1, float z0, float z1) {
+        addQuad(mesh, {x0, 1, z0}, {x1 - x0, 0, 0}, {0, 0, z1 - z0});
+    };
     ceiling(room, -0.5f, 0.5f, -0.5f, -kHalfZ);
     ceiling(room, -0.5f, 0.5f, kHalfZ, 0.5f);
     ceiling(room, -0.5f, -kHalfX, -kHalfZ, kHalfZ);

@@ -13,9 +13,15 @@ constexpr int kArrayBuffer = 34962, kElementArrayBuffer = 34963;
 
 using Json = nlohmann::ordered_json;
 
-Json triple(Vec3 v) { return {v.x, v.y, v.z}; }
+Json triple(Vec3 v)
+{
+    return {v.x, v.y, v.z};
+}
 
-bool isZero(Vec3 v) { return v.x == 0 && v.y == 0 && v.z == 0; }
+bool isZero(Vec3 v)
+{
+    return v.x == 0 && v.y == 0 && v.z == 0;
+}
 
 void appendUint(std::vector<uint8_t>& bytes, uint32_t value)
 {
@@ -42,10 +48,14 @@ Json lookRotation(Vec3 forward)
     const float sxy = (x.y + y.x) * s, syz = (y.z + z.y) * s, szx = (z.x + x.z) * s;
     switch (largest)
     {
-    case 0: return {a, sxy, szx, yz};
-    case 1: return {sxy, a, syz, zx};
-    case 2: return {szx, syz, a, xy};
-    default: return {yz, zx, xy, a};
+    case 0:
+        return {a, sxy, szx, yz};
+    case 1:
+        return {sxy, a, syz, zx};
+    case 2:
+        return {szx, syz, a, xy};
+    default:
+        return {yz, zx, xy, a};
     }
 }
 
@@ -84,10 +94,8 @@ uint32_t GltfWriter::addAccessor(const void* data, size_t count, size_t componen
 {
     static const char* const kTypes[] = {"SCALAR", "VEC2", "VEC3"};
     const uint32_t view = addView(data, count * components * 4, target);
-    json_["accessors"].push_back({{"bufferView", view},
-                                  {"componentType", component_type},
-                                  {"count", count},
-                                  {"type", kTypes[components - 1]}});
+    json_["accessors"].push_back(
+        {{"bufferView", view}, {"componentType", component_type}, {"count", count}, {"type", kTypes[components - 1]}});
     return uint32_t(json_["accessors"].size() - 1);
 }
 
@@ -150,7 +158,8 @@ uint32_t GltfWriter::addMaterial(const MaterialDescription& material)
 
 uint32_t GltfWriter::addMesh(const std::string& name, const Mesh& mesh, uint32_t material)
 {
-    check(!mesh.indices.empty() && mesh.positions.size() == mesh.normals.size() && mesh.positions.size() == mesh.uvs.size(),
+    check(!mesh.indices.empty() && mesh.positions.size() == mesh.normals.size() &&
+              mesh.positions.size() == mesh.uvs.size(),
           "mesh {} has {} indices, {} positions, {} normals, {} uvs", name, mesh.indices.size(), mesh.positions.size(),
           mesh.normals.size(), mesh.uvs.size());
     const size_t count = mesh.positions.size();

@@ -37,7 +37,10 @@ public:
     uint32_t addMesh(const std::string& name, const Mesh& mesh, uint32_t material);
     void addNode(const std::string& name, uint32_t mesh, Vec3 translation = {}, float turn_about_y = 0);
     /// A mesh used once.
-    void add(const std::string& name, const Mesh& mesh, uint32_t material) { addNode(name, addMesh(name, mesh, material)); }
+    void add(const std::string& name, const Mesh& mesh, uint32_t material)
+    {
+        addNode(name, addMesh(name, mesh, material));
+    }
     void addCamera(const std::string& name, Vec3 eye, Vec3 target, float vertical_fov); // radians
     void addSun(const std::string& name, Vec3 travels, Vec3 color, float irradiance);   // W/m^2 facing it
 

@@ -47,9 +47,10 @@ int main(int argc, char** argv)
 {
     std::string folder;
     std::vector<std::string> names;
-    CLI::App app{"Writes the demo scenes (CC0) as binary glTF files into OUTDIR.\nExit codes: 0 done, 1 usage, 2 a file "
-                 "cannot be written.",
-                 "lumicut-scenes"};
+    CLI::App app{
+        "Writes the demo scenes (CC0) as binary glTF files into OUTDIR.\nExit codes: 0 done, 1 usage, 2 a file "
+        "cannot be written.",
+        "lumicut-scenes"};
     app.set_version_flag("--version", "lumicut-scenes " LUMICUT_VERSION);
     app.add_option("OUTDIR", folder, "where to write; made if it is not there")->required();
     std::vector<std::string> known;

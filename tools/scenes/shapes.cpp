@@ -8,7 +8,10 @@ namespace
 
 constexpr float kPi = std::numbers::pi_v<float>;
 
-float distance(Vec2 a, Vec2 b) { return std::hypot(b.x - a.x, b.y - a.y); }
+float distance(Vec2 a, Vec2 b)
+{
+    return std::hypot(b.x - a.x, b.y - a.y);
+}
 
 Vec2 segmentNormal(Vec2 a, Vec2 b) // to the right of the way from a to b
 {
@@ -35,21 +38,24 @@ std::vector<std::pair<Vec2, Vec2>> profileNormals(const std::vector<Vec2>& profi
     for (size_t i = 0; i < count; ++i)
     {
         const bool first = i == 0 && !closed, last = i + 1 == count && !closed;
-        normals.emplace_back(first ? flat[i] : blend(i, (i + count - 1) % count), last ? flat[i] : blend(i, (i + 1) % count));
+        normals.emplace_back(first ? flat[i] : blend(i, (i + count - 1) % count),
+                             last ? flat[i] : blend(i, (i + 1) % count));
     }
     return normals;
 }
 
 /// Revolves one segment of a profile about +Y.
-void revolve(Mesh& mesh, Vec2 p0, Vec2 p1, std::pair<Vec2, Vec2> normals, float v0, float texture_round, uint32_t segments)
+void revolve(Mesh& mesh, Vec2 p0, Vec2 p1, std::pair<Vec2, Vec2> normals, float v0, float texture_round,
+             uint32_t segments)
 {
     const uint32_t base = uint32_t(mesh.positions.size());
     for (uint32_t i = 0; i <= segments; ++i)
     {
         const float t = float(i) / float(segments);
         const float c = std::cos(2 * kPi * t), s = i == segments ? 0.0f : std::sin(2 * kPi * t);
-        const auto vertex = [&](Vec2 p, Vec2 n, float v)
-        { mesh.addVertex({p.x * c, p.y, p.x * s}, {n.x * c, n.y, n.x * s}, {-t * texture_round, -v}); };
+        const auto vertex = [&](Vec2 p, Vec2 n, float v) {
+            mesh.addVertex({p.x * c, p.y, p.x * s}, {n.x * c, n.y, n.x * s}, {-t * texture_round, -v});
+        };
         vertex(p0, normals.first, v0);
         vertex(p1, normals.second, v0 + distance(p0, p1));
     }
@@ -90,7 +96,10 @@ uint32_t Mesh::addVertex(Vec3 position, Vec3 normal, Vec2 uv)
     return uint32_t(positions.size() - 1);
 }
 
-void Mesh::addTriangle(uint32_t a, uint32_t b, uint32_t c) { indices.insert(indices.end(), {a, b, c}); }
+void Mesh::addTriangle(uint32_t a, uint32_t b, uint32_t c)
+{
+    indices.insert(indices.end(), {a, b, c});
+}
 
 void Mesh::add(const Mesh& part, const Placement& placement)
 {
@@ -216,9 +225,15 @@ Mesh box(Vec3 low, Vec3 high, float bevel)
     return mesh;
 }
 
-Mesh lathe(const std::vector<Vec2>& profile, uint32_t segments) { return revolved(profile, segments, false, false); }
+Mesh lathe(const std::vector<Vec2>& profile, uint32_t segments)
+{
+    return revolved(profile, segments, false, false);
+}
 
-Mesh ring(const std::vector<Vec2>& profile, uint32_t segments) { return revolved(profile, segments, true, true); }
+Mesh ring(const std::vector<Vec2>& profile, uint32_t segments)
+{
+    return revolved(profile, segments, true, true);
+}
 
 Mesh sphere(float radius, uint32_t segments, uint32_t rings)
 {
@@ -259,7 +274,9 @@ Mesh archBay(float width, float height, float radius, float depth, float foot, b
     angles.insert(angles.end(), {corner, kPi - corner});
     std::sort(angles.begin(), angles.end());
 
-    const auto inner = [&](float a) { return Vec2{radius * std::cos(a), a == 0 || a == angles.back() ? 0.0f : radius * std::sin(a)}; };
+    const auto inner = [&](float a) {
+        return Vec2{radius * std::cos(a), a == 0 || a == angles.back() ? 0.0f : radius * std::sin(a)};
+    };
     const auto outer = [&](float a) // where the ray at angle `a` leaves the wall
     {
         const float c = std::cos(a), s = std::sin(a);
@@ -328,7 +345,9 @@ Mesh archMoulding(const std::vector<Vec2>& profile, uint32_t segments)
             const float a = kPi * float(i) / float(segments);
             const float c = std::cos(a), s = i == segments ? 0.0f : std::sin(a);
             const auto vertex = [&](Vec2 p, Vec2 n) // segmentNormal points right of the way: turn it to face outwards
-            { mesh.addVertex({p.x * c, p.x * s, p.y}, {-n.x * c, -n.x * s, -n.y}, {p.x * a, p.y}); };
+            {
+                mesh.addVertex({p.x * c, p.x * s, p.y}, {-n.x * c, -n.x * s, -n.y}, {p.x * a, p.y});
+            };
             vertex(profile[k], normals[k].first);
             vertex(profile[k + 1], normals[k].second);
         }

@@ -29,21 +29,23 @@ Mesh sheet(uint32_t columns, uint32_t rows, Vec2 size, const std::function<Vec3(
 /// Box with its edges cut off at 45 degrees by `bevel` metres (0: sharp).
 Mesh box(Vec3 low, Vec3 high, float bevel = 0);
 
-/// Turns a profile of (radius, height) about +Y. A profile that rises faces outwards; corners above 35 degrees stay sharp.
+/// Turns a profile of (radius, height) about +Y. A profile that rises faces outwards; corners above 35 degrees stay
+/// sharp.
 Mesh lathe(const std::vector<Vec2>& profile, uint32_t segments);
 
 /// Sphere about the origin with smooth normals.
 Mesh sphere(float radius, uint32_t segments, uint32_t rings);
 
-/// A closed profile of (distance from the axis, height) points swept about +Y with smooth normals: a ring. The profile runs
-/// counter-clockwise with distance to the right and height upwards.
+/// A closed profile of (distance from the axis, height) points swept about +Y with smooth normals: a ring. The profile
+/// runs counter-clockwise with distance to the right and height upwards.
 Mesh ring(const std::vector<Vec2>& profile, uint32_t segments);
 
 /// A fluted column shaft, open at both ends, from y = 0 to `height`, tapering from `radius` by an eighth.
 Mesh flutedShaft(float radius, float height, uint32_t flutes);
 
-/// The wall of one arcade bay above the springing line y = 0: x in +-width/2, up to `height`, with a half-round opening of
-/// `radius`. Front at z = 0 facing +z, intrados back to z = -depth, a back face where `back`. Legs reach down to y = -foot.
+/// The wall of one arcade bay above the springing line y = 0: x in +-width/2, up to `height`, with a half-round opening
+/// of `radius`. Front at z = 0 facing +z, intrados back to z = -depth, a back face where `back`. Legs reach down to y =
+/// -foot.
 Mesh archBay(float width, float height, float radius, float depth, float foot, bool back, uint32_t segments);
 
 /// A moulding of (distance from the centre, z) points along a half circle in the xy plane, ends at y = 0 open.

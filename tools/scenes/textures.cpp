@@ -18,7 +18,10 @@ uint32_t hash(uint32_t x, uint32_t y, uint32_t seed)
     return h ^ (h >> 15);
 }
 
-float random(int x, int y, uint32_t seed) { return float(hash(uint32_t(x), uint32_t(y), seed) >> 8) / 16777216.0f; }
+float random(int x, int y, uint32_t seed)
+{
+    return float(hash(uint32_t(x), uint32_t(y), seed) >> 8) / 16777216.0f;
+}
 
 /// Value noise in 0..1 that repeats after `period` lattice cells; x and y run over 0..1.
 float noise(float x, float y, int period, uint32_t seed)
@@ -47,7 +50,10 @@ float turbulence(float x, float y, int period, int octaves, uint32_t seed)
     return sum / total;
 }
 
-Vec3 mix(Vec3 a, Vec3 b, float t) { return a * (1 - t) + b * t; }
+Vec3 mix(Vec3 a, Vec3 b, float t)
+{
+    return a * (1 - t) + b * t;
+}
 
 float step(float low, float high, float x) // smooth
 {
@@ -111,102 +117,114 @@ float veins(float x, float y, int period, uint32_t seed)
 
 SurfaceTextures marbleTiles(uint32_t size)
 {
-    return paint(size, 2.0f, true, [](float x, float y)
-    {
-        // Four slabs of 1 m around which runs an inlay of 8 cm; each quarter has its own stone and cut.
-        const int i = x < 0.5f ? 0 : 1, j = y < 0.5f ? 0 : 1;
-        const float u = 2 * x - float(i), v = 2 * y - float(j);
-        const float edge = std::min(std::min(u, 1 - u), std::min(v, 1 - v)); // metres from the slab's edge
-        const float diamond = std::abs(u - 0.5f) + std::abs(v - 0.5f);
-        const bool light = (i + j) % 2 == 0;
-        const float vein = veins(x, y, 3, light ? 11 : 23);
-        const float cloud = turbulence(x, y, 4, 4, 31);
-        Vec3 color = light ? mix({0.74f, 0.70f, 0.63f}, {0.55f, 0.51f, 0.45f}, 0.7f * vein + 0.35f * cloud)
-                           : mix({0.36f, 0.22f, 0.16f}, {0.52f, 0.40f, 0.33f}, 0.5f * vein + 0.4f * cloud);
-        if (diamond < 0.24f)
-            color = light ? mix({0.30f, 0.17f, 0.12f}, {0.45f, 0.33f, 0.27f}, vein) : mix({0.60f, 0.54f, 0.44f}, {0.45f, 0.40f, 0.34f}, vein);
-        const bool inlay = edge > 0.05f && edge < 0.11f;
-        if (inlay)
-            color = mix({0.055f, 0.06f, 0.065f}, {0.10f, 0.10f, 0.10f}, cloud);
-        const float joint = step(0.0f, 0.006f, edge) * step(0.0f, 0.004f, std::abs(edge - 0.05f)) *
-                            step(0.0f, 0.004f, std::abs(edge - 0.11f)) * step(0.0f, 0.004f, std::abs(diamond - 0.24f));
-        color = mix({0.16f, 0.14f, 0.12f}, color, joint);
-        return Texel{color, 0.0015f * joint, 0.75f - joint * (0.53f - 0.10f * cloud)};
-    });
+    return paint(size, 2.0f, true,
+                 [](float x, float y)
+                 {
+                     // Four slabs of 1 m around which runs an inlay of 8 cm; each quarter has its own stone and cut.
+                     const int i = x < 0.5f ? 0 : 1, j = y < 0.5f ? 0 : 1;
+                     const float u = 2 * x - float(i), v = 2 * y - float(j);
+                     const float edge = std::min(std::min(u, 1 - u), std::min(v, 1 - v)); // metres from the slab's edge
+                     const float diamond = std::abs(u - 0.5f) + std::abs(v - 0.5f);
+                     const bool light = (i + j) % 2 == 0;
+                     const float vein = veins(x, y, 3, light ? 11 : 23);
+                     const float cloud = turbulence(x, y, 4, 4, 31);
+                     Vec3 color = light ? mix({0.74f, 0.70f, 0.63f}, {0.55f, 0.51f, 0.45f}, 0.7f * vein + 0.35f * cloud)
+                                        : mix({0.36f, 0.22f, 0.16f}, {0.52f, 0.40f, 0.33f}, 0.5f * vein + 0.4f * cloud);
+                     if (diamond < 0.24f)
+                         color = light ? mix({0.30f, 0.17f, 0.12f}, {0.45f, 0.33f, 0.27f}, vein)
+                                       : mix({0.60f, 0.54f, 0.44f}, {0.45f, 0.40f, 0.34f}, vein);
+                     const bool inlay = edge > 0.05f && edge < 0.11f;
+                     if (inlay)
+                         color = mix({0.055f, 0.06f, 0.065f}, {0.10f, 0.10f, 0.10f}, cloud);
+                     const float joint = step(0.0f, 0.006f, edge) * step(0.0f, 0.004f, std::abs(edge - 0.05f)) *
+                                         step(0.0f, 0.004f, std::abs(edge - 0.11f)) *
+                                         step(0.0f, 0.004f, std::abs(diamond - 0.24f));
+                     color = mix({0.16f, 0.14f, 0.12f}, color, joint);
+                     return Texel{color, 0.0015f * joint, 0.75f - joint * (0.53f - 0.10f * cloud)};
+                 });
 }
 
 SurfaceTextures bricks(uint32_t size)
 {
-    return paint(size, 1.5f, false, [](float x, float y)
-    {
-        const int rows = 18, columns = 6; // 25 x 8.3 cm
-        const float row = y * rows;
-        const int j = int(row);
-        const float column = x * columns + (j % 2 == 0 ? 0.0f : 0.5f);
-        const int i = int(column) % columns;
-        const float u = (column - std::floor(column)) * 0.25f, v = (row - float(j)) * (1.5f / rows); // metres
-        const float wobble = 0.004f * (turbulence(x, y, 24, 2, 5) - 0.5f);
-        const float edge = std::min(std::min(u, 0.25f - u), std::min(v, 1.5f / rows - v)) + wobble;
-        const float body = step(0.004f, 0.011f, edge);
-        const float tone = random(i, j, 77), grain = turbulence(x, y, 40, 3, 9);
-        const Vec3 brick = mix(mix({0.46f, 0.24f, 0.15f}, {0.58f, 0.37f, 0.26f}, tone), {0.26f, 0.13f, 0.09f}, 0.5f * grain);
-        const Vec3 mortar = mix({0.50f, 0.46f, 0.40f}, {0.38f, 0.35f, 0.31f}, grain);
-        return Texel{mix(mortar, brick, body), 0.006f * body + 0.0015f * grain, 1};
-    });
+    return paint(size, 1.5f, false,
+                 [](float x, float y)
+                 {
+                     const int rows = 18, columns = 6; // 25 x 8.3 cm
+                     const float row = y * rows;
+                     const int j = int(row);
+                     const float column = x * columns + (j % 2 == 0 ? 0.0f : 0.5f);
+                     const int i = int(column) % columns;
+                     const float u = (column - std::floor(column)) * 0.25f,
+                                 v = (row - float(j)) * (1.5f / rows); // metres
+                     const float wobble = 0.004f * (turbulence(x, y, 24, 2, 5) - 0.5f);
+                     const float edge = std::min(std::min(u, 0.25f - u), std::min(v, 1.5f / rows - v)) + wobble;
+                     const float body = step(0.004f, 0.011f, edge);
+                     const float tone = random(i, j, 77), grain = turbulence(x, y, 40, 3, 9);
+                     const Vec3 brick = mix(mix({0.46f, 0.24f, 0.15f}, {0.58f, 0.37f, 0.26f}, tone),
+                                            {0.26f, 0.13f, 0.09f}, 0.5f * grain);
+                     const Vec3 mortar = mix({0.50f, 0.46f, 0.40f}, {0.38f, 0.35f, 0.31f}, grain);
+                     return Texel{mix(mortar, brick, body), 0.006f * body + 0.0015f * grain, 1};
+                 });
 }
 
 SurfaceTextures plaster(uint32_t size)
 {
-    return paint(size, 2.0f, false, [](float x, float y)
-    {
-        const float broad = turbulence(x, y, 3, 3, 41), fine = turbulence(x, y, 48, 2, 43);
-        const Vec3 color = mix({0.80f, 0.74f, 0.64f}, {0.70f, 0.61f, 0.49f}, step(0.35f, 0.75f, broad));
-        return Texel{color * (0.97f + 0.05f * fine), 0.002f * broad + 0.0006f * fine, 1};
-    });
+    return paint(size, 2.0f, false,
+                 [](float x, float y)
+                 {
+                     const float broad = turbulence(x, y, 3, 3, 41), fine = turbulence(x, y, 48, 2, 43);
+                     const Vec3 color = mix({0.80f, 0.74f, 0.64f}, {0.70f, 0.61f, 0.49f}, step(0.35f, 0.75f, broad));
+                     return Texel{color * (0.97f + 0.05f * fine), 0.002f * broad + 0.0006f * fine, 1};
+                 });
 }
 
 SurfaceTextures limestone(uint32_t size)
 {
-    return paint(size, 1.0f, false, [](float x, float y)
-    {
-        const float cloud = turbulence(x, y, 5, 4, 51), pores = turbulence(x, y, 60, 2, 53);
-        const float pit = step(0.72f, 0.85f, pores);
-        const Vec3 color = mix({0.76f, 0.72f, 0.65f}, {0.64f, 0.59f, 0.51f}, cloud) * (1 - 0.25f * pit);
-        return Texel{color, 0.0008f * cloud - 0.0008f * pit, 1};
-    });
+    return paint(size, 1.0f, false,
+                 [](float x, float y)
+                 {
+                     const float cloud = turbulence(x, y, 5, 4, 51), pores = turbulence(x, y, 60, 2, 53);
+                     const float pit = step(0.72f, 0.85f, pores);
+                     const Vec3 color = mix({0.76f, 0.72f, 0.65f}, {0.64f, 0.59f, 0.51f}, cloud) * (1 - 0.25f * pit);
+                     return Texel{color, 0.0008f * cloud - 0.0008f * pit, 1};
+                 });
 }
 
 SurfaceTextures wovenCloth(uint32_t size)
 {
-    return paint(size, 1.4f, false, [](float x, float y)
-    {
-        const float threads = 96;
-        const float warp = std::sin(2 * kPi * threads * x), weft = std::sin(2 * kPi * threads * y);
-        const int parity = (int(x * threads * 2) + int(y * threads * 2)) % 2;
-        const float weave = parity == 0 ? std::abs(warp) : std::abs(weft);
-        // A border and a row of lozenges: worked in lighter thread.
-        const float edge = std::min(x, 1 - x);
-        const bool border = (edge > 0.05f && edge < 0.075f) || (edge > 0.09f && edge < 0.10f);
-        const float repeat = y * 5 - std::floor(y * 5);
-        const float lozenge = std::abs(x - 0.5f) / 0.16f + std::abs(repeat - 0.5f) / 0.38f;
-        const bool figure = (lozenge < 1.0f && lozenge > 0.8f) || lozenge < 0.35f;
-        const float tone = (border || figure ? 0.95f : 0.62f) * (0.85f + 0.15f * weave) * (0.92f + 0.16f * turbulence(x, y, 12, 3, 61));
-        return Texel{{tone, tone, tone}, 0.0008f * weave, 1};
-    });
+    return paint(size, 1.4f, false,
+                 [](float x, float y)
+                 {
+                     const float threads = 96;
+                     const float warp = std::sin(2 * kPi * threads * x), weft = std::sin(2 * kPi * threads * y);
+                     const int parity = (int(x * threads * 2) + int(y * threads * 2)) % 2;
+                     const float weave = parity == 0 ? std::abs(warp) : std::abs(weft);
+                     // A border and a row of lozenges: worked in lighter thread.
+                     const float edge = std::min(x, 1 - x);
+                     const bool border = (edge > 0.05f && edge < 0.075f) || (edge > 0.09f && edge < 0.10f);
+                     const float repeat = y * 5 - std::floor(y * 5);
+                     const float lozenge = std::abs(x - 0.5f) / 0.16f + std::abs(repeat - 0.5f) / 0.38f;
+                     const bool figure = (lozenge < 1.0f && lozenge > 0.8f) || lozenge < 0.35f;
+                     const float tone = (border || figure ? 0.95f : 0.62f) * (0.85f + 0.15f * weave) *
+                                        (0.92f + 0.16f * turbulence(x, y, 12, 3, 61));
+                     return Texel{{tone, tone, tone}, 0.0008f * weave, 1};
+                 });
 }
 
 SurfaceTextures planks(uint32_t size)
 {
-    return paint(size, 1.0f, false, [](float x, float y)
-    {
-        const int count = 5;
-        const int plank = int(x * count);
-        const float across = x * count - float(plank);
-        const float edge = std::min(across, 1 - across) / count;
-        const float offset = random(plank, 0, 71);
-        const float grain = turbulence(x, std::fmod(y * 0.125f + offset, 1.0f), 48, 3, 73);
-        const float joint = step(0.0f, 0.006f, edge);
-        const Vec3 color = mix({0.20f, 0.115f, 0.06f}, {0.34f, 0.21f, 0.12f}, grain) * (0.8f + 0.35f * offset);
-        return Texel{color * (0.35f + 0.65f * joint), 0.003f * joint + 0.0008f * grain, 1};
-    });
+    return paint(
+        size, 1.0f, false,
+        [](float x, float y)
+        {
+            const int count = 5;
+            const int plank = int(x * count);
+            const float across = x * count - float(plank);
+            const float edge = std::min(across, 1 - across) / count;
+            const float offset = random(plank, 0, 71);
+            const float grain = turbulence(x, std::fmod(y * 0.125f + offset, 1.0f), 48, 3, 73);
+            const float joint = step(0.0f, 0.006f, edge);
+            const Vec3 color = mix({0.20f, 0.115f, 0.06f}, {0.34f, 0.21f, 0.12f}, grain) * (0.8f + 0.35f * offset);
+            return Texel{color * (0.35f + 0.65f * joint), 0.003f * joint + 0.0008f * grain, 1};
+        });
 }

@@ -19,9 +19,9 @@ struct SurfaceTextures
     Texture roughness; // G: roughness, B: metallic (0); empty where the factor alone will do
 };
 
-SurfaceTextures marbleTiles(uint32_t size);  // 2 x 2 m: checkered slabs with a dark inlay
-SurfaceTextures bricks(uint32_t size);       // 1.5 x 1.5 m, running bond
-SurfaceTextures plaster(uint32_t size);      // 2 x 2 m
-SurfaceTextures limestone(uint32_t size);    // 1 x 1 m
-SurfaceTextures wovenCloth(uint32_t size);   // grey, to be tinted; one banner
-SurfaceTextures planks(uint32_t size);       // 1 x 1 m, grain along v
+SurfaceTextures marbleTiles(uint32_t size); // 2 x 2 m: checkered slabs with a dark inlay
+SurfaceTextures bricks(uint32_t size);      // 1.5 x 1.5 m, running bond
+SurfaceTextures plaster(uint32_t size);     // 2 x 2 m
+SurfaceTextures limestone(uint32_t size);   // 1 x 1 m
+SurfaceTextures wovenCloth(uint32_t size);  // grey, to be tinted; one banner
+SurfaceTextures planks(uint32_t size);      // 1 x 1 m, grain along v

@@ -1,0 +1,119 @@
+#include "tools/bench/rays.h"
+
+#include "runtime/camera.h"
+#include "runtime/stages/rays.h"
+#include "shaders/bench/bench.h"
+
+#include <algorithm>
+#include <array>
+
+namespace
+{
+constexpr std::array kKinds{"primary", "diffuse", "diffuse any-hit"};
+
+struct Throughput
+{
+    std::array<std::vector<double>, kKinds.size()> ms;
+    std::array<uint64_t, kKinds.size()> rays{};
+
+    double median(size_t kind) const
+    {
+        std::vector<double> sorted = ms[kind];
+        std::ranges::sort(sorted);
+        return sorted[sorted.size() / 2];
+    }
+    double megaraysPerSecond(size_t kind) const { return double(rays[kind]) / median(kind) * 1e-3; }
+};
+
+Throughput measure(const Device& device, const SceneGpu& scene, const Camera& camera, const RayBenchOptions& options)
+{
+    const uint32_t count = options.width * options.height;
+    const RayStage stage(device, scene);
+    const Kernel generate = device.kernel("primary/generate"), diffuse = device.kernel("bench/diffuse");
+    const RayQueue primary(device, "bench.primary", count), bounced(device, "bench.bounced", count);
+    const Buffer shadow_rays = device.array<gpu::ShadowRay>("bench.shadow_rays", count);
+    const Buffer hits = device.array<gpu::Hit>("bench.hits", count), bounced_hits = device.array<gpu::Hit>("bench.bounced_hits", count);
+    const Buffer radiance = device.array<gpu::vec3>("bench.radiance", count);
+
+    Throughput result;
+    constexpr uint32_t kWarmUp = 2;
+    for (uint32_t repeat = 0; repeat < kWarmUp + options.repeats; ++repeat)
+    {
+        Recorder rec(device);
+        rec.begin(scene.descriptorSet());
+        gpu::CameraParams view = cameraParams(camera, options.width, options.height);
+        view.seed = repeat;
+        stage.resize(rec, primary.size, count);
+        rec.run(generate, count, view, {{"Rays", primary.rays}});
+        rec.clear(radiance);
+        rec.clear(bounced.size);
+        {
+            const auto scope = rec.scope(kKinds[0]);
+            stage.closest(rec, primary, hits, repeat);
+        }
+        rec.run(diffuse, count, gpu::DiffuseParams{.seed = repeat},
+                {{"Queue", primary.size}, {"Rays", primary.rays}, {"Hits", hits}, {"NextQueue", bounced.size},
+                 {"NextRays", bounced.rays}, {"ShadowRays", shadow_rays}});
+        stage.close(rec, bounced.size);
+        {
+            const auto scope = rec.scope(kKinds[1]);
+            stage.closest(rec, bounced, bounced_hits, repeat);
+        }
+        {
+            const auto scope = rec.scope(kKinds[2]);
+            stage.visible(rec, bounced.size, shadow_rays, radiance);
+        }
+        const std::vector<StageTime> times = rec.submitAndWait();
+        for (size_t kind = 0; repeat >= kWarmUp && kind < kKinds.size(); ++kind)
+            result.ms[kind].push_back(times[kind].ms);
+    }
+    const uint32_t bounced_count = device.download<gpu::QueueSize>(bounced.size, 1)[0].count;
+    result.rays = {count, bounced_count, bounced_count};
+    return result;
+}
+
+void print(const Throughput& result, const Device& device, const package::Package& package, bool json)
+{
+    const uint64_t triangles = package.triangles().size();
+    if (json)
+    {
+        fmt::print("{{\"schema\": \"lumicut-bench-rays/1\", \"device\": \"{}\", \"triangles\": {}", device.name(), triangles);
+        constexpr std::array kKeys{"primary", "diffuse", "diffuse_any_hit"};
+        for (size_t kind = 0; kind < kKinds.size(); ++kind)
+            fmt::print(", \"{}_mrays_per_s\": {:.3f}", kKeys[kind], result.megaraysPerSecond(kind));
+        fmt::print("}}\n");
+        return;
+    }
+    fmt::print("{}, {} triangles, {} BVH nodes\n", device.name(), triangles, package.bvhNodes().size());
+    for (size_t kind = 0; kind < kKinds.size(); ++kind)
+        fmt::print("  {:<16} {:10.2f} Mrays/s  ({} rays, median {:.3f} ms of {} runs)\n", kKinds[kind], result.megaraysPerSecond(kind),
+                   result.rays[kind], result.median(kind), result.ms[kind].size());
+}
+} // namespace
+
+Status benchRays(const RayBenchOptions& options)
+{
+    const auto package = package::Package::open(options.package);
+    if (!package)
+        return package.error();
+    const auto camera = chooseCamera(*package, options.camera);
+    if (!camera)
+        return camera.error();
+    const auto instance = Instance::create({});
+    if (!instance)
+        return instance.error();
+    const auto index = selectDevice(instance->devices(), options.device);
+    if (!index)
+        return index.error();
+    const auto device = Device::create(*instance, *index, false);
+    if (!device)
+        return device.error();
+    const auto scene = SceneGpu::create(**device, *package);
+    if (!scene)
+        return scene.error();
+    const Throughput result = measure(**device, **scene, *camera, options);
+    if (result.rays[1] == 0)
+        return Error{ExitCode::kInvalid, "the camera sees no surface, so there is nothing to measure; choose another with --camera"};
+    print(result, **device, *package, options.json);
+    return Success{};
+}
