@@ -15,10 +15,10 @@ packages=(
     libdraco-dev libembree-dev libopenmesh-dev libstb-dev libtinygltf-dev libwebp-dev nlohmann-json3-dev
     # player
     libglfw3-dev libimgui-dev libvulkan-dev mesa-vulkan-drivers
-    # several programs
-    libarchive-dev libcli11-dev libfmt-dev libopenexr-dev
+    # tools, and what several programs share
+    libarchive-dev libcli11-dev libfmt-dev libopenexr-dev libssl-dev
     # tests
-    clang-14 libclang-rt-14-dev libgtest-dev vulkan-validationlayers xauth xvfb
+    clang-14 libclang-rt-14-dev libgtest-dev vulkan-validationlayers xauth xvfb zstd
 )
 
 if [[ ${1-} == --list ]]; then
