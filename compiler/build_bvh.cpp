@@ -6,29 +6,35 @@
 #include <embree3/rtcore.h>
 
 #include <algorithm>
-#include <deque>
 #include <memory>
 #include <new>
-#include <numeric>
-#include <optional>
+#include <type_traits>
 
 namespace
 {
-std::array<gpu::vec3, 3> corners(const WorldMesh& mesh, uint32_t triangle)
+/// What Embree's callbacks need to know.
+struct Source
 {
-    const gpu::uvec3& v = mesh.triangles[triangle];
-    return {mesh.positions[v.x], mesh.positions[v.y], mesh.positions[v.z]};
-}
+    std::vector<std::array<gpu::vec3, 3>> corners; // by triangle
+    float padding = 0;                             // metres, around every leaf
+};
 
-Box triangleBox(const WorldMesh& mesh, uint32_t triangle)
+Source gatherSource(const WorldMesh& mesh)
 {
-    Box box;
-    for (const gpu::vec3& p : corners(mesh, triangle))
-        box.grow(p);
-    return box;
+    Source source;
+    float largest = 0;
+    for (const gpu::uvec3& v : mesh.triangles)
+    {
+        source.corners.push_back({mesh.positions[v.x], mesh.positions[v.y], mesh.positions[v.z]});
+        for (const gpu::vec3& p : source.corners.back())
+            largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+    }
+    // A slab test works on differences of coordinates, whose rounding error is that of the largest one, and split
+    // triangles have corners rounded to it. Boxes grown by twice that error are never missed, however flat or close to
+    // zero they are.
+    source.padding = largest * 2 * std::numeric_limits<float>::epsilon();
+    return source;
 }
-
-// ---- Embree's builder ----------------------------------------------------------------------------------------------
 
 Box toBox(const RTCBuildPrimitive& p)
 {
@@ -54,29 +60,24 @@ void setChildren(void* node, void** children, unsigned child_count, void*)
 
 void ignoreBounds(void*, const RTCBounds**, unsigned, void*) {} // collapse() derives them from the leaves
 
-void* createLeaf(RTCThreadLocalAllocator allocator, const RTCBuildPrimitive* primitives, size_t count, void*)
+void* createLeaf(RTCThreadLocalAllocator allocator, const RTCBuildPrimitive* primitives, size_t count, void* user)
 {
-    check(count >= 1 && count <= kMaxLeafTriangles, "leaf of {}", count);
+    check(count == 1, "leaf of {}", count);
     auto* leaf = new (rtcThreadLocalAlloc(allocator, sizeof(BinaryNode), 16)) BinaryNode;
-    for (size_t i = 0; i < count; ++i)
-    {
-        leaf->triangles[i] = primitives[i].primID;
-        leaf->box.grow(toBox(primitives[i]));
-    }
-    // Two parts of one triangle may meet in a leaf again; the order depends on the builder's threads.
-    const auto begin = leaf->triangles.begin();
-    std::sort(begin, begin + long(count));
-    leaf->triangle_count = uint32_t(std::unique(begin, begin + long(count)) - begin);
+    leaf->triangle = primitives[0].primID;
+    const float p = static_cast<const Source*>(user)->padding;
+    const Box box = toBox(primitives[0]);
+    leaf->box = {box.low - gpu::vec3{p, p, p}, box.high + gpu::vec3{p, p, p}};
     return leaf;
 }
 
 void splitPrimitive(const RTCBuildPrimitive* primitive, unsigned dimension, float position, RTCBounds* left,
                     RTCBounds* right, void* user)
 {
-    const auto* all_corners = static_cast<const std::array<gpu::vec3, 3>*>(user);
     Box left_box;
     Box right_box;
-    splitTriangleBox(all_corners[primitive->primID], toBox(*primitive), dimension, position, left_box, right_box);
+    splitTriangleBox(static_cast<const Source*>(user)->corners[primitive->primID], toBox(*primitive), dimension,
+                     position, left_box, right_box);
     *left = toBounds(left_box);
     *right = toBounds(right_box);
 }
@@ -92,92 +93,42 @@ struct BvhRelease
 using Device = std::unique_ptr<std::remove_pointer_t<RTCDevice>, DeviceRelease>;
 using EmbreeBvh = std::unique_ptr<std::remove_pointer_t<RTCBVH>, BvhRelease>;
 
-std::vector<RTCBuildPrimitive> buildPrimitives(const WorldMesh& mesh, size_t capacity)
+/// @param capacity of the result; what is left of it Embree fills with the parts that spatial splits make
+std::vector<RTCBuildPrimitive> buildPrimitives(const Source& source, size_t capacity)
 {
     std::vector<RTCBuildPrimitive> primitives(capacity);
-    for (uint32_t i = 0; i < mesh.triangles.size(); ++i)
+    for (uint32_t i = 0; i < source.corners.size(); ++i)
     {
-        const Box b = triangleBox(mesh, i);
+        Box b;
+        for (const gpu::vec3& p : source.corners[i])
+            b.grow(p);
         primitives[i] = {b.low.x, b.low.y, b.low.z, 0, b.high.x, b.high.y, b.high.z, i};
     }
     return primitives;
 }
 
-struct BuildChoice
+/// One triangle, or a part of one, in every leaf: collapse() joins leaves where that is cheaper, which costs rays 4 %
+/// less than leaving it to Embree.
+BinaryNode* buildBinary(RTCBVH bvh, const Source& source)
 {
-    bool spatial_splits;
-    uint32_t max_depth;
-};
-
-/// @return nothing where Embree gives up (depth limit, memory)
-std::optional<Bvh> buildWithEmbree(RTCDevice device, const WorldMesh& mesh, std::span<const uint32_t> triangle_flags,
-                                   const BuildChoice& choice, float padding)
-{
-    const EmbreeBvh bvh(rtcNewBVH(device));
-    // Room for as many more as there are triangles: the parts that spatial splits make.
-    std::vector<RTCBuildPrimitive> primitives =
-        buildPrimitives(mesh, choice.spatial_splits ? 2 * mesh.triangles.size() : mesh.triangles.size());
-
-    std::vector<std::array<gpu::vec3, 3>> all_corners; // gathered once: splitPrimitive() asks for them all the time
-    for (uint32_t i = 0; i < mesh.triangles.size(); ++i)
-        all_corners.push_back(corners(mesh, i));
-
+    std::vector<RTCBuildPrimitive> primitives = buildPrimitives(source, 2 * source.corners.size());
     RTCBuildArguments arguments = rtcDefaultBuildArguments();
-    arguments.buildQuality = choice.spatial_splits ? RTC_BUILD_QUALITY_HIGH : RTC_BUILD_QUALITY_MEDIUM;
+    arguments.buildQuality = RTC_BUILD_QUALITY_HIGH;
     arguments.maxBranchingFactor = 2;
-    arguments.maxDepth = choice.max_depth;
+    arguments.maxDepth = 1024; // never reached; limitDepth() does better than Embree where a tree is too deep
     arguments.minLeafSize = 1;
-    arguments.maxLeafSize = 1; // collapse() joins leaves where that is cheaper: 4 % less cost than leaving it to Embree
-    arguments.bvh = bvh.get();
+    arguments.maxLeafSize = 1;
+    arguments.bvh = bvh;
     arguments.primitives = primitives.data();
-    arguments.primitiveCount = mesh.triangles.size();
+    arguments.primitiveCount = source.corners.size();
     arguments.primitiveArrayCapacity = primitives.size();
     arguments.createNode = createNode;
     arguments.setNodeChildren = setChildren;
     arguments.setNodeBounds = ignoreBounds;
     arguments.createLeaf = createLeaf;
-    arguments.splitPrimitive = choice.spatial_splits ? splitPrimitive : nullptr;
-    arguments.userPtr = all_corners.data();
-
-    auto* root = static_cast<BinaryNode*>(rtcBuildBVH(&arguments));
-    if (!root)
-        return std::nullopt;
-    return collapse(*root, mesh, triangle_flags, padding);
-}
-
-// ---- The last resort: halves along the longest side, as shallow as a tree can be ------------------------------------
-
-BinaryNode* buildMedian(const WorldMesh& mesh, std::span<uint32_t> triangles, std::deque<BinaryNode>& nodes)
-{
-    BinaryNode& node = nodes.emplace_back();
-    Box centers;
-    const auto center = [&](uint32_t triangle)
-    {
-        const Box b = triangleBox(mesh, triangle);
-        return b.low * 0.5f + b.high * 0.5f;
-    };
-    if (triangles.size() <= kMaxLeafTriangles)
-    {
-        std::sort(triangles.begin(), triangles.end());
-        std::copy(triangles.begin(), triangles.end(), node.triangles.begin());
-        node.triangle_count = uint32_t(triangles.size());
-        for (const uint32_t triangle : triangles)
-            node.box.grow(triangleBox(mesh, triangle));
-        return &node;
-    }
-    for (const uint32_t triangle : triangles)
-        centers.grow(center(triangle));
-    const gpu::vec3 size = centers.high - centers.low;
-    const auto coordinate = [&](const gpu::vec3& p) {
-        return size.x >= size.y && size.x >= size.z ? p.x : size.y >= size.z ? p.y : p.z;
-    };
-    const auto before = [&](uint32_t a, uint32_t b)
-    { return std::pair(coordinate(center(a)), a) < std::pair(coordinate(center(b)), b); };
-    const size_t half = triangles.size() / 2;
-    std::nth_element(triangles.begin(), triangles.begin() + long(half), triangles.end(), before);
-    node.children = {buildMedian(mesh, triangles.first(half), nodes),
-                     buildMedian(mesh, triangles.subspan(half), nodes)};
-    return &node;
+    arguments.splitPrimitive = splitPrimitive;
+    arguments.userPtr = const_cast<Source*>(&source);
+    return static_cast<BinaryNode*>(rtcBuildBVH(&arguments));
 }
 } // namespace
 
@@ -185,25 +136,17 @@ Bvh buildBvh(const WorldMesh& mesh, std::span<const uint32_t> triangle_flags)
 {
     check(!mesh.triangles.empty() && triangle_flags.size() == mesh.triangles.size(), "{} triangles, {} flags",
           mesh.triangles.size(), triangle_flags.size());
-
-    // A slab test works on differences of coordinates, whose rounding error is that of the largest one, and split
-    // triangles have corners rounded to it. Boxes grown by twice that error are never missed, however flat or close to
-    // zero they are.
-    float largest = 0;
-    for (const gpu::vec3& p : mesh.positions)
-        largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
-    const float padding = largest * 2 * std::numeric_limits<float>::epsilon();
-
     const Device device(rtcNewDevice(nullptr));
     check(device, "Embree error {}", int(rtcGetDeviceError(nullptr)));
-    for (const BuildChoice& choice : {BuildChoice{true, 64}, {true, 32}, {false, 64}, {false, 32}})
+    const EmbreeBvh memory(rtcNewBVH(device.get()));
+    BinaryNode* root = buildBinary(memory.get(), gatherSource(mesh));
+    check(root, "Embree error {}", int(rtcGetDeviceError(device.get())));
+
+    Bvh bvh = collapse(*root, mesh, triangle_flags);
+    for (uint32_t depth = 56; bvh.traversal_stack > gpu::kTraversalStackSize; depth -= 4)
     {
-        std::optional<Bvh> bvh = buildWithEmbree(device.get(), mesh, triangle_flags, choice, padding);
-        if (bvh && bvh->traversal_stack <= gpu::kTraversalStackSize)
-            return std::move(*bvh);
+        limitDepth(*root, depth);
+        bvh = collapse(*root, mesh, triangle_flags);
     }
-    std::vector<uint32_t> triangles(mesh.triangles.size());
-    std::iota(triangles.begin(), triangles.end(), 0u);
-    std::deque<BinaryNode> nodes;
-    return collapse(*buildMedian(mesh, triangles, nodes), mesh, triangle_flags, padding);
+    return bvh;
 }

@@ -26,8 +26,8 @@ struct Plan
 class Collapse
 {
 public:
-    Collapse(const WorldMesh& mesh, std::span<const uint32_t> triangle_flags, float padding)
-        : mesh_(mesh), triangle_flags_(triangle_flags), padding_(padding)
+    Collapse(const WorldMesh& mesh, std::span<const uint32_t> triangle_flags)
+        : mesh_(mesh), triangle_flags_(triangle_flags)
     {
     }
 
@@ -61,11 +61,10 @@ private:
         Plan result;
         if (node.isLeaf())
         {
-            pad(node.box);
-            result.triangles = node.triangles;
-            result.triangle_count = node.triangle_count;
+            result.triangles[0] = node.triangle;
+            result.triangle_count = 1;
             result.as_leaf = true;
-            result.cost.fill(node.box.halfArea() * kTriangleCost * node.triangle_count);
+            result.cost.fill(node.box.halfArea() * kTriangleCost);
         }
         else
         {
@@ -129,12 +128,6 @@ private:
         std::copy(merged.begin(), end, result.triangles.begin());
         result.triangle_count = uint32_t(count);
         return true;
-    }
-
-    void pad(Box& box) const
-    {
-        const gpu::vec3 p{padding_, padding_, padding_};
-        box = {box.low - p, box.high + p};
     }
 
     /// Appends the at most `count` trees that represent `node`'s children, `share` of them from its first child.
@@ -212,7 +205,6 @@ private:
 
     const WorldMesh& mesh_;
     std::span<const uint32_t> triangle_flags_;
-    float padding_;
     std::vector<Plan> plans_;
     std::vector<std::pair<uint32_t, uint32_t>> node_plans_; // of both children
     Bvh bvh_;
@@ -220,7 +212,7 @@ private:
 };
 } // namespace
 
-Bvh collapse(BinaryNode& root, const WorldMesh& mesh, std::span<const uint32_t> triangle_flags, float padding)
+Bvh collapse(BinaryNode& root, const WorldMesh& mesh, std::span<const uint32_t> triangle_flags)
 {
-    return Collapse(mesh, triangle_flags, padding).run(root);
+    return Collapse(mesh, triangle_flags).run(root);
 }

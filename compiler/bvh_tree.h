@@ -1,4 +1,4 @@
-// The hierarchy while it is being built: a binary tree of pointers, leaves of few triangles.
+// The hierarchy while it is being built: a binary tree of pointers, a triangle in every leaf.
 #pragma once
 #include "compiler/build_bvh.h"
 #include "compiler/vector_math.h"
@@ -7,7 +7,7 @@
 #include <limits>
 #include <span>
 
-inline constexpr uint32_t kMaxLeafTriangles = 4; // measured: 2 and 4 are equally fast, 8 is slower
+inline constexpr uint32_t kMaxLeafTriangles = 4; // of the 4-wide tree
 
 struct Box
 {
@@ -37,12 +37,11 @@ struct Box
 
 struct BinaryNode
 {
-    Box box;
-    std::array<BinaryNode*, 2> children{};               // null in a leaf
-    std::array<uint32_t, kMaxLeafTriangles> triangles{}; // ascending, without duplicates
-    uint32_t triangle_count = 0;                         // 0 in an inner node
+    Box box;                               // in a leaf as built, in an inner node once collapse() has been there
+    std::array<BinaryNode*, 2> children{}; // null in a leaf
+    uint32_t triangle = 0;                 // of a leaf, which holds it or a part of it
 
-    bool isLeaf() const { return triangle_count > 0; }
+    bool isLeaf() const { return children[0] == nullptr; }
 };
 
 /// Splits `box` (about all or a part of the triangle) at `position` along `axis` and shrinks both halves to the parts
@@ -50,7 +49,11 @@ struct BinaryNode
 void splitTriangleBox(const std::array<gpu::vec3, 3>& corners, const Box& box, uint32_t axis, float position, Box& left,
                       Box& right);
 
+/// Rebuilds what lies too deep in the tree from halves of equal size, so that no leaf is more than `depth` levels below
+/// `root`. Leaves stay as they are; the top of the tree stays as it is for as long as the rest then still fits.
+/// @param depth at least log2 of the number of leaves
+void limitDepth(BinaryNode& root, uint32_t depth);
+
 /// Turns the binary tree into 4-wide nodes so that the surface-area heuristic is least (Wald et al. 2008; the dynamic
-/// program of Ylitie et al. 2017, section 3.1), in depth-first order.
-/// @param padding metres added around every leaf's bounds
-Bvh collapse(BinaryNode& root, const WorldMesh& mesh, std::span<const uint32_t> triangle_flags, float padding);
+/// program of Ylitie et al. 2017, section 3.1), in depth-first order. Sets the boxes of inner nodes.
+Bvh collapse(BinaryNode& root, const WorldMesh& mesh, std::span<const uint32_t> triangle_flags);

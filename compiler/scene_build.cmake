@@ -6,6 +6,7 @@ find_path(STB_INCLUDE_DIR stb_image.h PATH_SUFFIXES stb REQUIRED)
 add_library(lumicut_scene_build STATIC
     ${CMAKE_CURRENT_LIST_DIR}/alias_table.cpp
     ${CMAKE_CURRENT_LIST_DIR}/build_bvh.cpp
+    ${CMAKE_CURRENT_LIST_DIR}/bvh_balance.cpp
     ${CMAKE_CURRENT_LIST_DIR}/bvh_collapse.cpp
     ${CMAKE_CURRENT_LIST_DIR}/bvh_split.cpp
     ${CMAKE_CURRENT_LIST_DIR}/build_lights.cpp

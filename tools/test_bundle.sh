@@ -64,7 +64,9 @@ expect_missing() {
 restore() {
     [ ! -e "$root/usr/share/vulkan/icd.off" ] || mv "$root/usr/share/vulkan/icd.off" "$root/usr/share/vulkan/icd.d"
     for library in "$root"/usr/lib/*/off.libvulkan.so.1*; do
-        [ ! -e "$library" ] || mv "$library" "${library%/*}/${library##*/off.}"
+        if [ -e "$library" ] || [ -L "$library" ]; then
+            mv "$library" "${library%/*}/${library##*/off.}"
+        fi
     done
     chroot "$root" ldconfig
 }

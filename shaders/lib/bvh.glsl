@@ -74,7 +74,9 @@ Hit nearestTriangle(vec3 origin, vec3 direction, float t_min, float t_max)
     vec3 inverse = safeInverse(direction);
     while (true)
     {
-        if ((current & kLeafBit) == 0u)
+        // Down to a leaf; then its triangles: two loops, so that neighbouring rays do the same kind of work together
+        // (Aila & Laine 2009, "Understanding the Efficiency of Ray Traversal on GPUs").
+        while ((current & kLeafBit) == 0u)
         {
             vec4 t = hitBoxes(current, origin, inverse, hit.t);
             uvec4 child = bvh_nodes[current].child;
@@ -90,18 +92,13 @@ Hit nearestTriangle(vec3 origin, vec3 direction, float t_min, float t_max)
                 stack[depth++] = child.z;
             if (t.y < kInfinity)
                 stack[depth++] = child.y;
-            if (t.x < kInfinity)
-            {
-                current = child.x;
-                continue;
-            }
+            current = t.x < kInfinity ? child.x : depth > 0u ? stack[--depth] : kNone;
         }
-        else
-            for (uint slot = current & kLeafFirstMask; slot < leafEnd(current); ++slot)
-                hitTriangle(slot, origin, direction, t_min, hit);
-        if (depth == 0u)
+        if (current == kNone)
             return hit;
-        current = stack[--depth];
+        for (uint slot = current & kLeafFirstMask; slot < leafEnd(current); ++slot)
+            hitTriangle(slot, origin, direction, t_min, hit);
+        current = depth > 0u ? stack[--depth] : kNone;
     }
 }
 
@@ -116,7 +113,7 @@ bool anyOpaqueTriangle(vec3 origin, vec3 direction, float t_max, out bool met_tr
     met_translucent = false;
     while (true)
     {
-        if ((current & kLeafBit) == 0u)
+        while ((current & kLeafBit) == 0u)
         {
             vec4 t = hitBoxes(current, origin, inverse, t_max);
             uvec4 child = bvh_nodes[current].child;
@@ -128,25 +125,20 @@ bool anyOpaqueTriangle(vec3 origin, vec3 direction, float t_max, out bool met_tr
                         stack[depth++] = next;
                     next = child[i];
                 }
-            if (next != kNone)
-            {
-                current = next;
-                continue;
-            }
+            current = next != kNone ? next : depth > 0u ? stack[--depth] : kNone;
         }
-        else
-            for (uint slot = current & kLeafFirstMask; slot < leafEnd(current); ++slot)
-            {
-                Hit hit = Hit(t_max, kNone, vec2(0.0));
-                if (!hitTriangle(slot, origin, direction, 0.0, hit))
-                    continue;
-                if (!kSceneHasTranslucency || bvh_triangles[slot].flags == 0u)
-                    return true;
-                met_translucent = true;
-            }
-        if (depth == 0u)
+        if (current == kNone)
             return false;
-        current = stack[--depth];
+        for (uint slot = current & kLeafFirstMask; slot < leafEnd(current); ++slot)
+        {
+            Hit hit = Hit(t_max, kNone, vec2(0.0));
+            if (!hitTriangle(slot, origin, direction, 0.0, hit))
+                continue;
+            if (!kSceneHasTranslucency || bvh_triangles[slot].flags == 0u)
+                return true;
+            met_translucent = true;
+        }
+        current = depth > 0u ? stack[--depth] : kNone;
     }
 }
 

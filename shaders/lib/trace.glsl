@@ -12,16 +12,16 @@ const uint kMaxLayers = 64u; // translucent surfaces along one ray; the next one
 /// The nearest surface within t_max; one with alpha is there with the probability of its coverage, decided by `seed`.
 Hit closestHit(vec3 origin, vec3 direction, float t_max, uint seed)
 {
-    Hit hit = nearestTriangle(origin, direction, 0.0, t_max);
-    if (!kSceneHasAlpha)
-        return hit;
+    Hit hit;
+    float t = 0.0;
     for (uint layer = 0u; layer < kMaxLayers; ++layer)
     {
-        if (hit.slot == kNone || (bvh_triangles[hit.slot].flags & kTriangleAlpha) == 0u)
-            return hit;
+        hit = nearestTriangle(origin, direction, t, t_max);
+        if (!kSceneHasAlpha || hit.slot == kNone || (bvh_triangles[hit.slot].flags & kTriangleAlpha) == 0u)
+            break;
         if (toUnitFloat(hash(seed, layer)) < surfaceCoverage(hit.slot, hit.barycentrics))
-            return hit;
-        hit = nearestTriangle(origin, direction, hit.t, t_max);
+            break;
+        t = hit.t;
     }
     return hit;
 }
