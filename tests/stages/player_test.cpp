@@ -265,14 +265,6 @@ TEST_F(Player, ReplacesAnOlderPictureOnlyWhenTheNewOneIsWhole)
     EXPECT_NE(render("out.exr", "--spp 1"), "older");
 }
 
-TEST_F(Player, PlaysFramesInAWindowAndEnds)
-{
-    const ProgramRun run = runProgram("/usr/bin/xvfb-run", fmt::format("-a '{}' {} --size 64x48 --frames 3 --validate --output {}",
-                                                                       LUMICUT_PLAY, path("scene.lumi"), path("window.png")));
-    EXPECT_EQ(run.exit_code, 0) << run.out << run.err; // xvfb-run sends both to stdout
-    EXPECT_TRUE(fileBytes(folder_ / "window.png").starts_with("\x89PNG"));
-}
-
 TEST_F(Player, FailedCompilationsLeaveNothingBehind)
 {
     std::filesystem::remove(folder_ / "scene.lumi");
