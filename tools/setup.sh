@@ -1,0 +1,83 @@
+#!/usr/bin/env bash
+# Installs the Debian 12 packages that Lumicut needs and that are not there yet; README.md says what each is for.
+#   tools/setup.sh          installs what is missing; where nothing is, only looks (well under a second)
+#   tools/setup.sh --list   prints the packages
+set -euo pipefail
+
+packages=(
+    # build
+    cmake g++ ninja-build pkg-config
+    # shaders, at build time
+    glslang-tools spirv-cross spirv-tools
+    # package format
+    flatbuffers-compiler libflatbuffers-dev libxxhash-dev libzstd-dev
+    # compiler
+    libdraco-dev libembree-dev libopenmesh-dev libstb-dev libtinygltf-dev libwebp-dev nlohmann-json3-dev
+    # player
+    libglfw3-dev libimgui-dev libvulkan-dev mesa-vulkan-drivers
+    # tools, and what several programs share
+    libarchive-dev libcli11-dev libfmt-dev libopenexr-dev libssl-dev
+    # tests
+    clang-14 libclang-rt-14-dev libgtest-dev vulkan-validationlayers xauth xvfb zstd
+)
+
+if [[ ${1-} == --list ]]; then
+    printf '%s\n' "${packages[@]}"
+    exit
+fi
+
+fail() {
+    echo "setup: error: $*" >&2
+    exit 1
+}
+
+for tool in apt-get dpkg-query; do
+    command -v $tool >/dev/null ||
+        fail "there is no $tool here; this script knows Debian 12 only. Install by other means: ${packages[*]}"
+done
+
+# dpkg-query exits with 1 where it knows nothing of a name; that package is then simply missing.
+installed=" $(dpkg-query -W -f='${Package}:${db:Status-Status} ' "${packages[@]}" 2>/dev/null || true)"
+missing=()
+for package in "${packages[@]}"; do
+    [[ $installed == *" $package:installed "* ]] || missing+=("$package")
+done
+if ((${#missing[@]} == 0)); then
+    echo "setup: all ${#packages[@]} packages are installed"
+    exit
+fi
+echo "setup: ${#missing[@]} of ${#packages[@]} packages are missing: ${missing[*]}"
+
+as_root=()
+if ((EUID != 0)); then
+    command -v sudo >/dev/null || fail "installing needs root; run as root: apt-get install ${missing[*]}"
+    as_root=(sudo)
+fi
+# Through env, because sudo keeps no variables.
+apt=("${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -q -y -o Dpkg::Use-Pty=0 -o DPkg::Lock::Timeout=300)
+
+log=$(mktemp)
+trap 'rm -f "$log"' EXIT
+
+# progress WORD: turns apt's status lines (KIND:NAME:PERCENT:TEXT) into a line of ours every 20 percent.
+progress() {
+    awk -F: -v word="$1" 'BEGIN { next_line = 20 }
+        ($1 == "dlstatus" || $1 == "pmstatus") && $3 + 0 >= next_line {
+            print "setup: " word " " int($3 / 20) * 20 " %"; fflush(); next_line = int($3 / 20) * 20 + 20 }'
+}
+
+# phase WORD ARGUMENT...: runs apt-get quietly; what it said is shown only where it fails.
+phase() {
+    local word=$1
+    shift
+    if ! "${apt[@]}" -o APT::Status-Fd=1 "$@" 2>&1 | tee -a "$log" | progress "$word"; then
+        tail -n 20 "$log" >&2
+        fail "$word failed; apt-get said the above"
+    fi
+}
+
+echo "setup: refreshing the package lists"
+"${apt[@]}" update >"$log" 2>&1 || { tail -n 20 "$log" >&2; fail "apt-get update failed; is there a network?"; }
+phase "downloading" install --no-install-recommends --download-only "${missing[@]}"
+phase "installing" install --no-install-recommends "${missing[@]}"
+echo "setup: done"

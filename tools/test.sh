@@ -1,0 +1,22 @@
+#!/usr/bin/env bash
+# Installs what is missing, builds everything and runs every test: a minute of fuzzing the package reader, then ctest.
+# Fails where a test does; a missing Vulkan device is a failure too, never a skipped test.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+export LUMICUT_REQUIRE_DEVICE=1
+
+tools/setup.sh
+tools/build.sh release
+tools/build.sh asan fuzz_package fuzz_seeds
+
+result=0
+echo "test: fuzzing the package reader for a minute"
+ctest --preset asan --label-regex fuzz || result=1
+# Tests of the GPU take turns (RESOURCE_LOCK gpu): a software device uses every core on its own.
+echo "test: running all tests"
+ctest --preset release --parallel "$(nproc)" || result=1
+if ((result != 0)); then
+    echo "test: failed" >&2
+fi
+exit $result
