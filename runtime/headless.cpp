@@ -33,6 +33,8 @@ Status playHeadless(const PlayerOptions& options)
     const auto opened = openScene(options, {}, statistics);
     if (!opened)
         return opened.error();
+    if (const Status status = Renderer::checkSize(*opened->device, options.width, options.height); !status)
+        return status;
     Renderer renderer(*opened->device, *opened->scene, options.mode, options.width, options.height);
     statistics.pipeline_ms = opened->device->pipelineMs();
     renderSamples(options, renderer, *opened, statistics);

@@ -5,6 +5,9 @@
 
 namespace
 {
+constexpr uint64_t kLargestPixelBytes = sizeof(gpu::ShadingPoint); // of any stage's buffer
+static_assert(kLargestPixelBytes >= sizeof(gpu::ShadowRay) && kLargestPixelBytes >= sizeof(gpu::Ray));
+
 /// Small pictures leave a GPU idle: several samples a pixel side by side fill it. A CPU gains nothing by that.
 uint32_t batchFor(const Device& device, uint32_t pixel_count)
 {
@@ -17,6 +20,15 @@ bool sameView(const gpu::CameraParams& a, const gpu::CameraParams& b)
     return std::memcmp(&a, &b, sizeof(a)) == 0; // both from cameraParams(): sampling fields are equal
 }
 } // namespace
+
+Status Renderer::checkSize(const Device& device, uint32_t width, uint32_t height)
+{
+    const uint64_t most = device.limits().maxStorageBufferRange / kLargestPixelBytes;
+    if (uint64_t(width) * height <= most)
+        return Success{};
+    return Error{ExitCode::kDevice, fmt::format("a picture of {}x{} is too large for {}, which takes {:.1f} million pixels", width, height,
+                                                device.name(), double(most) * 1e-6)};
+}
 
 Renderer::Renderer(const Device& device, const SceneGpu& scene, Mode mode, uint32_t width, uint32_t height)
     : width_(width), height_(height), max_batch_(mode == Mode::kReference ? batchFor(device, width * height) : 1),

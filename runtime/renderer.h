@@ -19,7 +19,11 @@ enum class Mode
 class Renderer
 {
 public:
-    /// Allocates for pictures of `width` x `height` pixels; make another Renderer for another size.
+    /// @return kDevice where a picture of that size needs larger buffers than the device has
+    static Status checkSize(const Device& device, uint32_t width, uint32_t height);
+
+    /// Allocates for pictures of `width` x `height` pixels; make another Renderer for another size,
+    /// which checkSize() has let pass.
     Renderer(const Device& device, const SceneGpu& scene, Mode mode, uint32_t width, uint32_t height);
 
     /// Records one frame, `sample_count` more samples a pixel. A changed camera starts the picture anew.

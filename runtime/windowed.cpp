@@ -35,13 +35,13 @@ public:
     Status play(Statistics& statistics);
 
 private:
-    bool fitSurface();
+    Result<bool> fitSurface();
     void useKeys();
     void saveScreenshot();
     void usePanel();
     void showFrame(Statistics& statistics);
     bool finished(uint32_t frames) const;
-    void makeRenderer();
+    Status makeRenderer();
 
     PlayerOptions options_; // settings and mode change under the person's hands
     Window& window_;
@@ -58,20 +58,25 @@ private:
     bool panel_ = true;
 };
 
-void WindowedPlayer::makeRenderer()
+Status WindowedPlayer::makeRenderer()
 {
     renderer_.reset(); // its memory first
-    renderer_.emplace(*opened_.device, *opened_.scene, options_.mode, swapchain_.extent().width, swapchain_.extent().height);
+    const VkExtent2D extent = swapchain_.extent();
+    if (const Status status = Renderer::checkSize(*opened_.device, extent.width, extent.height); !status)
+        return status;
+    renderer_.emplace(*opened_.device, *opened_.scene, options_.mode, extent.width, extent.height);
+    return Success{};
 }
 
-/// @return false while there is nothing to draw on
-bool WindowedPlayer::fitSurface()
+/// @return false while there is nothing to draw on; kDevice where the window has become too large to render
+Result<bool> WindowedPlayer::fitSurface()
 {
     if (!swapchain_.resize(window_.size()))
         return false;
     const VkExtent2D extent = swapchain_.extent();
     if (!renderer_ || renderer_->width() != extent.width || renderer_->height() != extent.height)
-        makeRenderer();
+        if (const Status status = makeRenderer(); !status)
+            return status.error();
     return true;
 }
 
@@ -125,7 +130,7 @@ void WindowedPlayer::usePanel()
     if (actions.camera)
         fly_.jump(opened_.cameras[*actions.camera]);
     if (options_.mode != mode)
-        makeRenderer();
+        check(bool(makeRenderer()), "the picture's size has not changed");
     else if (actions.restart)
         renderer_->restart();
 }
@@ -157,7 +162,7 @@ void WindowedPlayer::showFrame(Statistics& statistics)
 
 bool WindowedPlayer::finished(uint32_t frames) const
 {
-    return window_.closing() || (options_.frame_count > 0 && frames >= options_.frame_count) ||
+    return window_.closing() || swapchain_.lost() || (options_.frame_count > 0 && frames >= options_.frame_count) ||
            (options_.sample_count > 0 && renderer_ && renderer_->sampleCount() >= options_.sample_count);
 }
 
@@ -170,7 +175,10 @@ Status WindowedPlayer::play(Statistics& statistics)
         drawable = swapchain_.acquire();
         if (!drawable)
         {
-            drawable = fitSurface();
+            const Result<bool> fits = fitSurface();
+            if (!fits)
+                return fits.error();
+            drawable = *fits;
             continue;
         }
         const auto now = Clock::now();

@@ -93,6 +93,7 @@ Device::~Device()
     if (!device_)
         return;
     waitIdle();
+    kernels_.clear();
     savePipelineCache();
     vkDestroyPipelineCache(device_, pipeline_cache_, nullptr);
     vkDestroyCommandPool(device_, once_pool_, nullptr);
@@ -161,15 +162,22 @@ Kernel Device::kernel(std::string_view name, std::span<const uint32_t> constants
     const auto codes = kernelCodes();
     const auto code = std::ranges::find(codes, name, &KernelCode::name);
     check(code != codes.end(), "there is no kernel '{}'", name);
+    const auto [entry, added] = kernels_.try_emplace({std::string(name), {constants.begin(), constants.end()}});
+    if (added)
+        entry->second = createKernel(*code, constants);
+    return entry->second;
+}
 
+Kernel Device::createKernel(const KernelCode& code, std::span<const uint32_t> constants) const
+{
     Kernel kernel;
     kernel.state_ = std::make_shared<Kernel::State>();
     Kernel::State& state = *kernel.state_;
     state.device = device_;
-    state.code = &*code;
+    state.code = &code;
 
     std::vector<VkDescriptorSetLayoutBinding> bindings;
-    for (const KernelBlock& block : code->blocks)
+    for (const KernelBlock& block : code.blocks)
         bindings.push_back({.binding = block.binding,
                             .descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
                             .descriptorCount = 1,
@@ -182,20 +190,20 @@ Kernel Device::kernel(std::string_view name, std::span<const uint32_t> constants
     };
     vulkanCheck(vkCreateDescriptorSetLayout(device_, &set_info, nullptr, &state.set_layout));
     const std::array sets{scene_set_layout_, state.set_layout};
-    const VkPushConstantRange push{.stageFlags = VK_SHADER_STAGE_COMPUTE_BIT, .size = code->push_bytes};
+    const VkPushConstantRange push{.stageFlags = VK_SHADER_STAGE_COMPUTE_BIT, .size = code.push_bytes};
     const VkPipelineLayoutCreateInfo layout_info{
         .sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
         .setLayoutCount = uint32_t(sets.size()),
         .pSetLayouts = sets.data(),
-        .pushConstantRangeCount = code->push_bytes > 0 ? 1u : 0u,
+        .pushConstantRangeCount = code.push_bytes > 0 ? 1u : 0u,
         .pPushConstantRanges = &push,
     };
     vulkanCheck(vkCreatePipelineLayout(device_, &layout_info, nullptr, &state.layout));
 
     const auto start = std::chrono::steady_clock::now();
     const VkShaderModuleCreateInfo module_info{.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
-                                               .codeSize = code->words.size_bytes(),
-                                               .pCode = code->words.data()};
+                                               .codeSize = code.words.size_bytes(),
+                                               .pCode = code.words.data()};
     VkShaderModule module;
     vulkanCheck(vkCreateShaderModule(device_, &module_info, nullptr, &module));
     std::vector<VkSpecializationMapEntry> entries;
@@ -216,7 +224,7 @@ Kernel Device::kernel(std::string_view name, std::span<const uint32_t> constants
     };
     vulkanCheck(vkCreateComputePipelines(device_, pipeline_cache_, 1, &info, nullptr, &state.pipeline));
     vkDestroyShaderModule(device_, module, nullptr);
-    nameObject(VK_OBJECT_TYPE_PIPELINE, uint64_t(state.pipeline), name);
+    nameObject(VK_OBJECT_TYPE_PIPELINE, uint64_t(state.pipeline), code.name);
     pipeline_ms_ += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
     return kernel;
 }

@@ -7,9 +7,11 @@
 
 #include <cstring>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <span>
 #include <string_view>
+#include <vector>
 
 class Device
 {
@@ -21,6 +23,7 @@ public:
     Device& operator=(const Device&) = delete;
 
     /// "samples/assign" is shaders/samples/assign.comp. Aborts where there is no such kernel.
+    /// A kernel asked for again with the same constants is the same one.
     /// @param constants values of the kernel's specialization constants 0, 1, ...
     Kernel kernel(std::string_view name, std::span<const uint32_t> constants = {}) const;
 
@@ -74,6 +77,7 @@ private:
     void createLayouts();
     void loadPipelineCache();
     void savePipelineCache() const;
+    Kernel createKernel(const KernelCode& code, std::span<const uint32_t> constants) const;
     Buffer buffer(std::string_view name, uint64_t bytes, Placement placement) const;
     Buffer uploadBytes(std::string_view name, std::span<const std::byte> data) const;
     void downloadBytes(const Buffer& source, std::span<std::byte> data) const;
@@ -93,6 +97,7 @@ private:
     VkPipelineCache pipeline_cache_ = VK_NULL_HANDLE;
     std::filesystem::path pipeline_cache_path_;
     PFN_vkSetDebugUtilsObjectNameEXT set_name_ = nullptr;
+    mutable std::map<std::pair<std::string, std::vector<uint32_t>>, Kernel> kernels_; // by name and constants
     mutable double pipeline_ms_ = 0;
     mutable uint64_t allocated_bytes_ = 0;
 };

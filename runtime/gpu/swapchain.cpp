@@ -1,6 +1,7 @@
 #include "runtime/gpu/swapchain.h"
 
 #include <algorithm>
+#include <optional>
 #include <array>
 
 namespace
@@ -9,10 +10,14 @@ constexpr VkImageUsageFlags kUsage = VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_
 constexpr uint32_t kWantedImages = 3;
 constexpr VkImageSubresourceRange kWhole{VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
 
-VkSurfaceCapabilitiesKHR capabilities(const Device& device, VkSurfaceKHR surface)
+/// @return nothing where the surface is gone
+std::optional<VkSurfaceCapabilitiesKHR> capabilities(const Device& device, VkSurfaceKHR surface)
 {
     VkSurfaceCapabilitiesKHR caps;
-    vulkanCheck(vkGetPhysicalDeviceSurfaceCapabilitiesKHR(device.physical(), surface, &caps));
+    const VkResult result = vkGetPhysicalDeviceSurfaceCapabilitiesKHR(device.physical(), surface, &caps);
+    if (result == VK_ERROR_SURFACE_LOST_KHR)
+        return std::nullopt;
+    vulkanCheck(result);
     return caps;
 }
 
@@ -46,14 +51,16 @@ VkSemaphore semaphore(const Device& device)
     return made;
 }
 
-bool fits(VkResult result)
+} // namespace
+
+bool Swapchain::fits(VkResult result)
 {
-    if (result == VK_ERROR_OUT_OF_DATE_KHR)
+    lost_ |= result == VK_ERROR_SURFACE_LOST_KHR;
+    if (lost_ || result == VK_ERROR_OUT_OF_DATE_KHR)
         return false;
     vulkanCheck(result);
     return true;
 }
-} // namespace
 
 Swapchain::Swapchain(const Instance& instance, const Device& device, VkSurfaceKHR surface)
     : instance_(instance), device_(device), surface_(surface)
@@ -91,7 +98,8 @@ Status Swapchain::choose()
         vulkanCheck(vkGetPhysicalDeviceSurfaceFormatsKHR(device_.physical(), surface_, &count, nullptr));
         formats.resize(count);
         vulkanCheck(vkGetPhysicalDeviceSurfaceFormatsKHR(device_.physical(), surface_, &count, formats.data()));
-        supported = (capabilities(device_, surface_).supportedUsageFlags & kUsage) == kUsage;
+        const auto caps = capabilities(device_, surface_);
+        supported = caps && (caps->supportedUsageFlags & kUsage) == kUsage;
     }
     // The pixels are sRGB-encoded already, so the images must not encode again.
     const auto format = std::ranges::find_if(formats, [](const VkSurfaceFormatKHR& f)
@@ -151,22 +159,25 @@ void Swapchain::createOverlayPass()
 bool Swapchain::resize(VkExtent2D wanted)
 {
     device_.waitIdle();
-    const VkSurfaceCapabilitiesKHR caps = capabilities(device_, surface_);
-    const VkExtent2D extent = imageExtent(caps, wanted);
+    const auto caps = capabilities(device_, surface_);
+    lost_ = !caps;
+    if (lost_)
+        return false;
+    const VkExtent2D extent = imageExtent(*caps, wanted);
     if (extent.width == 0 || extent.height == 0)
         return false;
     const VkSwapchainCreateInfoKHR info{
         .sType = VK_STRUCTURE_TYPE_SWAPCHAIN_CREATE_INFO_KHR,
         .surface = surface_,
-        .minImageCount = wantedImageCount(caps),
+        .minImageCount = wantedImageCount(*caps),
         .imageFormat = format_,
         .imageColorSpace = VK_COLOR_SPACE_SRGB_NONLINEAR_KHR,
         .imageExtent = extent,
         .imageArrayLayers = 1,
         .imageUsage = kUsage,
         .imageSharingMode = VK_SHARING_MODE_EXCLUSIVE,
-        .preTransform = caps.currentTransform,
-        .compositeAlpha = compositeAlpha(caps),
+        .preTransform = caps->currentTransform,
+        .compositeAlpha = compositeAlpha(*caps),
         .presentMode = VK_PRESENT_MODE_FIFO_KHR,
         .clipped = VK_TRUE,
         .oldSwapchain = swapchain_,

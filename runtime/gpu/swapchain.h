@@ -16,6 +16,8 @@ public:
     /// Makes the images anew, as large as the surface, or as `wanted` where that leaves the choice.
     /// @return false while the surface has no area
     bool resize(VkExtent2D wanted);
+    /// The window is gone, by another's hand: nothing can be shown any more.
+    bool lost() const { return lost_; }
     VkExtent2D extent() const { return extent_; } // pixels
     bool bgra() const { return format_ == VK_FORMAT_B8G8R8A8_UNORM; }
     uint32_t imageCount() const { return uint32_t(frames_.size()); }
@@ -43,6 +45,7 @@ private:
     };
     Swapchain(const Instance& instance, const Device& device, VkSurfaceKHR surface);
     Status choose();
+    bool fits(VkResult result);
     void createOverlayPass();
     Frame createFrame(VkImage image) const;
     void destroyFrames();
@@ -58,4 +61,5 @@ private:
     std::vector<Frame> frames_;
     uint32_t current_ = 0;
     bool stale_ = false;
+    bool lost_ = false;
 };
