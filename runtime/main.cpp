@@ -3,6 +3,7 @@
 
 #include "runtime/capture.h"
 #include "runtime/headless.h"
+#include "runtime/windowed.h"
 #undef check
 
 namespace
@@ -98,6 +99,6 @@ int main(int argc, char** argv)
         status = checkOptions(options);
     if (!status)
         return fail("lumicut-play", status.error());
-    status = playHeadless(options);
+    status = options.headless ? playHeadless(options) : playWindowed(options);
     return status ? int(ExitCode::kOk) : fail(options.package.string(), status.error());
 }

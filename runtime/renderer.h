@@ -24,6 +24,8 @@ public:
 
     /// Records one frame, `sample_count` more samples a pixel. A changed camera starts the picture anew.
     void record(Recorder& rec, const Camera& camera, const Settings& settings, uint32_t seed, uint32_t sample_count = 1);
+    /// The next record() starts the picture anew: settings that decide what samples show have changed.
+    void restart() { last_camera_.reset(); }
     /// The picture so far as 8-bit sRGB pixels, uint[width * height].
     const Buffer& display(Recorder& rec, const Settings& settings, bool bgra);
 

@@ -14,17 +14,41 @@ vec3 safeInverse(vec3 direction)
     return 1.0 / mix(direction, tiny, lessThan(abs(direction), vec3(1e-20)));
 }
 
-/// Entry distances of a ray into a node's four boxes; larger than t_max where it misses.
-vec4 hitBoxes(uint node, vec3 origin, vec3 inverse, float t_max)
+/// What the box test needs of a ray, computed once.
+struct BoxRay
 {
-    vec4 x0 = (bvh_nodes[node].min_x - origin.x) * inverse.x, x1 = (bvh_nodes[node].max_x - origin.x) * inverse.x;
-    vec4 y0 = (bvh_nodes[node].min_y - origin.y) * inverse.y, y1 = (bvh_nodes[node].max_y - origin.y) * inverse.y;
-    vec4 z0 = (bvh_nodes[node].min_z - origin.z) * inverse.z, z1 = (bvh_nodes[node].max_z - origin.z) * inverse.z;
-    vec4 enter = max(max(min(x0, x1), min(y0, y1)), max(min(z0, z1), vec4(0.0)));
-    vec4 leave = min(min(max(x0, x1), max(y0, y1)), min(max(z0, z1), vec4(t_max)));
-    // Three roundings on each side: Ize 2013, "Robust BVH Ray Traversal".
-    return mix(vec4(kInfinity), enter, lessThanEqual(enter, leave * 1.0000004));
+    vec3 inverse;
+    vec3 near_shift, far_shift; // origin x inverse, moved apart by the rounding error of the test
+    uvec3 near_row;             // row of a node's near planes per axis; the far planes' is the other of the pair
+};
+
+BoxRay boxRay(vec3 origin, vec3 direction)
+{
+    BoxRay ray;
+    ray.inverse = safeInverse(direction);
+    vec3 shift = origin * ray.inverse;
+    vec3 slack = abs(shift) * 4e-7;
+    ray.near_shift = shift + slack;
+    ray.far_shift = shift - slack;
+    ray.near_row = uvec3(0u, 2u, 4u) + uvec3(lessThan(ray.inverse, vec3(0.0)));
+    return ray;
 }
+
+vec4 nodeRow(uint row) { return uintBitsToFloat(bvh_rows[row]); }
+
+/// Entry distances of a ray into a node's four boxes; kInfinity where it misses.
+vec4 hitBoxes(uint node, BoxRay ray, float t_max)
+{
+    uint row = node * kBvhNodeRows;
+    uvec3 near = row + ray.near_row, far = row + (ray.near_row ^ 1u);
+    vec4 enter = max(max(nodeRow(near.x) * ray.inverse.x - ray.near_shift.x, nodeRow(near.y) * ray.inverse.y - ray.near_shift.y),
+                     max(nodeRow(near.z) * ray.inverse.z - ray.near_shift.z, vec4(0.0)));
+    vec4 leave = min(min(nodeRow(far.x) * ray.inverse.x - ray.far_shift.x, nodeRow(far.y) * ray.inverse.y - ray.far_shift.y),
+                     min(nodeRow(far.z) * ray.inverse.z - ray.far_shift.z, vec4(t_max)));
+    return mix(vec4(kInfinity), enter, lessThanEqual(enter, leave));
+}
+
+uvec4 nodeChildren(uint node) { return bvh_rows[node * kBvhNodeRows + 6u]; }
 
 /// Watertight along shared edges: the edge functions of two neighbours are exact negatives of each other
 /// (Davidovic et al. 2012, "3D Rasterization", in the sum-and-difference form, which FMA contraction cannot break).
@@ -64,41 +88,57 @@ void swapIfFarther(inout float t0, inout uint c0, inout float t1, inout uint c1)
 
 uint leafEnd(uint child) { return (child & kLeafFirstMask) + ((child >> kLeafCountShift) & kLeafCountMask) + 1u; }
 
+// Children still to be visited: reference and entry distance. Module scope, so that functions share it without copies.
+uvec2 traversal_stack[kTraversalStackSize];
+uint traversal_depth;
+
+void push(uint child, float entry) { traversal_stack[traversal_depth++] = uvec2(child, floatBitsToUint(entry)); }
+
+/// The next child that is entered before t_max, or kNone.
+uint popNearer(float t_max)
+{
+    while (traversal_depth > 0u)
+    {
+        uvec2 top = traversal_stack[--traversal_depth];
+        if (uintBitsToFloat(top.y) < t_max)
+            return top.x;
+    }
+    return kNone;
+}
+
 /// The nearest triangle between t_min (exclusive) and t_max, whatever its coverage.
 Hit nearestTriangle(vec3 origin, vec3 direction, float t_min, float t_max)
 {
-    uint stack[kTraversalStackSize];
-    uint depth = 0u;
+    traversal_depth = 0u;
     uint current = 0u;
     Hit hit = Hit(t_max, kNone, vec2(0.0));
-    vec3 inverse = safeInverse(direction);
+    BoxRay ray = boxRay(origin, direction);
     while (true)
     {
         // Down to a leaf; then its triangles: two loops, so that neighbouring rays do the same kind of work together
         // (Aila & Laine 2009, "Understanding the Efficiency of Ray Traversal on GPUs").
         while ((current & kLeafBit) == 0u)
         {
-            vec4 t = hitBoxes(current, origin, inverse, hit.t);
-            uvec4 child = bvh_nodes[current].child;
-            t = mix(t, vec4(kInfinity), equal(child, uvec4(kNone)));
+            vec4 t = hitBoxes(current, ray, hit.t);
+            uvec4 child = nodeChildren(current);
             swapIfFarther(t.x, child.x, t.y, child.y);
             swapIfFarther(t.z, child.z, t.w, child.w);
             swapIfFarther(t.x, child.x, t.z, child.z);
             swapIfFarther(t.y, child.y, t.w, child.w);
             swapIfFarther(t.y, child.y, t.z, child.z);
             if (t.w < kInfinity)
-                stack[depth++] = child.w;
+                push(child.w, t.w);
             if (t.z < kInfinity)
-                stack[depth++] = child.z;
+                push(child.z, t.z);
             if (t.y < kInfinity)
-                stack[depth++] = child.y;
-            current = t.x < kInfinity ? child.x : depth > 0u ? stack[--depth] : kNone;
+                push(child.y, t.y);
+            current = t.x < kInfinity ? child.x : popNearer(hit.t);
         }
         if (current == kNone)
             return hit;
         for (uint slot = current & kLeafFirstMask; slot < leafEnd(current); ++slot)
             hitTriangle(slot, origin, direction, t_min, hit);
-        current = depth > 0u ? stack[--depth] : kNone;
+        current = popNearer(hit.t);
     }
 }
 
@@ -106,26 +146,25 @@ Hit nearestTriangle(vec3 origin, vec3 direction, float t_min, float t_max)
 /// `met_translucent` says whether there was one, so that the caller knows when nothing is left to look at.
 bool anyOpaqueTriangle(vec3 origin, vec3 direction, float t_max, out bool met_translucent)
 {
-    uint stack[kTraversalStackSize];
-    uint depth = 0u;
+    traversal_depth = 0u;
     uint current = 0u;
-    vec3 inverse = safeInverse(direction);
+    BoxRay ray = boxRay(origin, direction);
     met_translucent = false;
     while (true)
     {
         while ((current & kLeafBit) == 0u)
         {
-            vec4 t = hitBoxes(current, origin, inverse, t_max);
-            uvec4 child = bvh_nodes[current].child;
+            vec4 t = hitBoxes(current, ray, t_max);
+            uvec4 child = nodeChildren(current);
             uint next = kNone;
             for (uint i = 0u; i < kBvhWidth; ++i)
-                if (t[i] < kInfinity && child[i] != kNone)
+                if (t[i] < kInfinity)
                 {
                     if (next != kNone)
-                        stack[depth++] = next;
+                        push(next, 0.0);
                     next = child[i];
                 }
-            current = next != kNone ? next : depth > 0u ? stack[--depth] : kNone;
+            current = next != kNone ? next : popNearer(t_max);
         }
         if (current == kNone)
             return false;
@@ -138,7 +177,7 @@ bool anyOpaqueTriangle(vec3 origin, vec3 direction, float t_max, out bool met_tr
                 return true;
             met_translucent = true;
         }
-        current = depth > 0u ? stack[--depth] : kNone;
+        current = popNearer(t_max);
     }
 }
 

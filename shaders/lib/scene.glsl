@@ -12,7 +12,8 @@ const bool kSceneHasThin = (kSceneFeatures & kFeatureThin) != 0u;
 const bool kSceneHasTranslucency = (kSceneFeatures & (kFeatureAlpha | kFeatureThin)) != 0u;
 
 layout(set = 0, binding = kSceneInfoBinding, scalar) uniform SceneBlock { SceneInfo scene; };
-layout(set = 0, binding = kBvhNodesBinding, scalar) readonly buffer BvhNodes { BvhNode bvh_nodes[]; };
+layout(set = 0, binding = kBvhNodesBinding, scalar) readonly buffer BvhNodes { uvec4 bvh_rows[]; };
+const uint kBvhNodeRows = 7u; // BvhNode as rows: min x, max x, min y, max y, min z, max z, children
 layout(set = 0, binding = kBvhTrianglesBinding, scalar) readonly buffer BvhTriangles { BvhTriangle bvh_triangles[]; };
 layout(set = 0, binding = kTrianglesBinding, scalar) readonly buffer Triangles { Triangle triangles[]; };
 layout(set = 0, binding = kVertexAttributesBinding, scalar) readonly buffer Vertices { VertexAttributes vertices[]; };

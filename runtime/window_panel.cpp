@@ -1,0 +1,108 @@
+#include "runtime/window_panel.h"
+
+#include <imgui.h>
+
+namespace
+{
+void text(const std::string& line) { ImGui::TextUnformatted(line.data(), line.data() + line.size()); }
+
+void showFacts(const PanelFacts& facts)
+{
+    text(std::string(facts.device));
+    text(fmt::format("{} x {}, {} samples a pixel", facts.width, facts.height, facts.sample_count));
+    text(fmt::format("{:8.2f} ms a frame ({:.1f} a second)", facts.frame_ms, facts.frame_ms > 0 ? 1000 / facts.frame_ms : 0));
+    for (const StageTime& stage : facts.stages)
+        text(fmt::format("{:8.2f} ms {}", stage.ms, stage.name));
+}
+
+void chooseMode(Mode& mode)
+{
+    int index = int(mode);
+    ImGui::RadioButton("direct", &index, int(Mode::kDirect));
+    ImGui::SameLine();
+    ImGui::RadioButton("reference", &index, int(Mode::kReference));
+    mode = Mode(index);
+}
+
+std::optional<size_t> chooseCamera(std::span<const Camera> cameras)
+{
+    std::optional<size_t> chosen;
+    for (size_t i = 0; i < cameras.size(); ++i)
+    {
+        const std::string name = cameras[i].name.empty() ? fmt::format("camera {}", i) : cameras[i].name;
+        if (ImGui::Selectable(fmt::format("{}##{}", name, i).c_str()))
+            chosen = i;
+    }
+    return chosen;
+}
+
+/// @return whether it changed
+bool editKnob(const Knob& knob, uint32_t& value)
+{
+    const std::string name(knob.name);
+    if (knob.choices.empty())
+    {
+        const uint32_t least = uint32_t(knob.least), most = uint32_t(knob.most);
+        return ImGui::SliderScalar(name.c_str(), ImGuiDataType_U32, &value, &least, &most, nullptr,
+                                   ImGuiSliderFlags_AlwaysClamp | (most > 100 ? ImGuiSliderFlags_Logarithmic : 0));
+    }
+    std::string items(knob.choices); // ImGui wants each name ended by a zero, and the list by one more
+    std::ranges::replace(items, ',', '\0');
+    items.push_back('\0');
+    int index = int(value);
+    const bool changed = ImGui::Combo(name.c_str(), &index, items.c_str());
+    value = uint32_t(index);
+    return changed;
+}
+
+bool editKnob(const Knob& knob, float& value)
+{
+    const std::string name(knob.name), format = knob.unit.empty() ? "%.3g" : fmt::format("%.2f {}", knob.unit);
+    return ImGui::SliderFloat(name.c_str(), &value, float(knob.least), float(knob.most), format.c_str(), ImGuiSliderFlags_AlwaysClamp);
+}
+
+/// Whether the knob decides only how the samples are shown.
+bool isDisplayKnob(const Knob& knob)
+{
+    return knob.member == decltype(knob.member)(&Settings::exposure) || knob.member == decltype(knob.member)(&Settings::tonemap);
+}
+
+bool editKnobs(Settings& settings)
+{
+    bool restart = false;
+    ImGui::PushItemWidth(ImGui::GetFontSize() * 10);
+    for (const Knob& knob : knobs())
+    {
+        const bool changed = std::visit([&](auto member) { return editKnob(knob, settings.*member); }, knob.member);
+        restart |= changed && !isDisplayKnob(knob);
+        if (ImGui::IsItemHovered())
+            ImGui::SetTooltip("%s", std::string(knob.help).c_str());
+    }
+    ImGui::PopItemWidth();
+    return restart;
+}
+} // namespace
+
+PanelActions drawPanel(const PanelFacts& facts, Settings& settings, Mode& mode)
+{
+    PanelActions actions;
+    ImGui::SetNextWindowPos({8, 8}); // fixed: a window made small for a moment must not push it out
+    // No keyboard navigation: Tab and the arrows belong to the window.
+    ImGui::Begin("Lumicut", nullptr,
+                 ImGuiWindowFlags_NoMove | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoNav |
+                     ImGuiWindowFlags_NoFocusOnAppearing);
+    showFacts(facts);
+    ImGui::Separator();
+    chooseMode(mode);
+    actions.restart = editKnobs(settings);
+    ImGui::Separator();
+    actions.camera = chooseCamera(facts.cameras);
+    ImGui::Separator();
+    text(fmt::format("WASD QE fly at {:.3g} m/s (wheel, Shift)\n"
+                     "drag looks, 1-9 cameras\nF1 panel, F12 screenshot, Esc quits",
+                     facts.speed));
+    if (!facts.notice.empty())
+        text(std::string(facts.notice));
+    ImGui::End();
+    return actions;
+}

@@ -1,0 +1,206 @@
+#include "runtime/windowed.h"
+
+#include "runtime/capture.h"
+#include "runtime/opened_scene.h"
+#include "runtime/window_overlay.h"
+#include "runtime/window_panel.h"
+
+#include <GLFW/glfw3.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace
+{
+using Clock = std::chrono::steady_clock;
+constexpr size_t kMeasuredFrames = 10000; // enough for percentiles; a window may stay open for days
+
+float sceneSize(const SceneGpu& scene)
+{
+    const gpu::vec3 a = scene.info().bounds_min, b = scene.info().bounds_max;
+    return std::max(std::hypot(b.x - a.x, b.y - a.y, b.z - a.z), 1e-3f);
+}
+
+/// What is on the screen and how it changes from frame to frame.
+class WindowedPlayer
+{
+public:
+    WindowedPlayer(const PlayerOptions& options, Window& window, const OpenedScene& opened, Swapchain& swapchain)
+        : options_(options), window_(window), opened_(opened), swapchain_(swapchain), rec_(*opened.device),
+          overlay_(window, opened.instance, *opened.device, swapchain, rec_), fly_(opened.camera, sceneSize(*opened.scene))
+    {
+    }
+
+    Status play(Statistics& statistics);
+
+private:
+    bool fitSurface();
+    void useKeys();
+    void saveScreenshot();
+    void usePanel();
+    void showFrame(Statistics& statistics);
+    bool finished(uint32_t frames) const;
+    void makeRenderer();
+
+    PlayerOptions options_; // settings and mode change under the person's hands
+    Window& window_;
+    const OpenedScene& opened_;
+    Swapchain& swapchain_;
+    Recorder rec_;
+    WindowOverlay overlay_;
+    FlyCamera fly_;
+    std::optional<Renderer> renderer_;
+    std::vector<StageTime> stages_;
+    std::string notice_;
+    Clock::time_point last_frame_ = Clock::now();
+    double frame_ms_ = 0;
+    bool panel_ = true;
+};
+
+void WindowedPlayer::makeRenderer()
+{
+    renderer_.reset(); // its memory first
+    renderer_.emplace(*opened_.device, *opened_.scene, options_.mode, swapchain_.extent().width, swapchain_.extent().height);
+}
+
+/// @return false while there is nothing to draw on
+bool WindowedPlayer::fitSurface()
+{
+    if (!swapchain_.resize(window_.size()))
+        return false;
+    const VkExtent2D extent = swapchain_.extent();
+    if (!renderer_ || renderer_->width() != extent.width || renderer_->height() != extent.height)
+        makeRenderer();
+    return true;
+}
+
+void WindowedPlayer::saveScreenshot()
+{
+    namespace fs = std::filesystem;
+    uint32_t number = 1;
+    const auto path = [&](const char* extension) { return fs::path(fmt::format("screenshot-{:04}{}", number, extension)); };
+    while (fs::exists(path(".png")) || fs::exists(path(".exr")))
+        ++number;
+    notice_ = fmt::format("wrote {} and .exr", path(".png").string());
+    for (const char* extension : {".png", ".exr"})
+        if (const Status status = capture(path(extension), *renderer_, *opened_.device, *opened_.scene, options_.settings); !status)
+            notice_ = status.error().message;
+    fmt::print(stderr, "{}\n", notice_);
+}
+
+void WindowedPlayer::useKeys()
+{
+    for (const int key : window_.takeKeys())
+    {
+        if (overlay_.wantsKeyboard())
+            continue;
+        if (key == GLFW_KEY_ESCAPE)
+            window_.close();
+        else if (key == GLFW_KEY_F1 || key == GLFW_KEY_TAB)
+            panel_ = !panel_;
+        else if (key == GLFW_KEY_F12)
+            saveScreenshot();
+        else if (key >= GLFW_KEY_1 && key <= GLFW_KEY_9 && size_t(key - GLFW_KEY_1) < opened_.cameras.size())
+            fly_.jump(opened_.cameras[size_t(key - GLFW_KEY_1)]);
+    }
+}
+
+void WindowedPlayer::usePanel()
+{
+    if (!panel_)
+        return;
+    const Mode mode = options_.mode;
+    const std::string device = opened_.device->name();
+    const PanelActions actions = drawPanel({.device = device,
+                                            .width = renderer_->width(),
+                                            .height = renderer_->height(),
+                                            .sample_count = renderer_->sampleCount(),
+                                            .frame_ms = frame_ms_,
+                                            .stages = stages_,
+                                            .cameras = opened_.cameras,
+                                            .speed = fly_.speed(),
+                                            .notice = notice_},
+                                           options_.settings, options_.mode);
+    if (actions.camera)
+        fly_.jump(opened_.cameras[*actions.camera]);
+    if (options_.mode != mode)
+        makeRenderer();
+    else if (actions.restart)
+        renderer_->restart();
+}
+
+/// Renders and shows one frame; an image is acquired.
+void WindowedPlayer::showFrame(Statistics& statistics)
+{
+    rec_.begin(opened_.scene->descriptorSet());
+    {
+        const auto scope = rec_.scope("frame");
+        renderer_->record(rec_, fly_.camera(), options_.settings, options_.seed, renderer_->maxBatch());
+        const Buffer& pixels = renderer_->display(rec_, options_.settings, swapchain_.bgra());
+        const auto shown = rec_.scope("show");
+        swapchain_.beginOverlay(rec_.commands(), pixels);
+        overlay_.draw(rec_.commands());
+        swapchain_.endOverlay(rec_.commands());
+    }
+    if (statistics.frames.empty())
+    {
+        statistics.first_submit_ms = statistics.elapsedMs();
+        statistics.pipeline_ms = opened_.device->pipelineMs();
+    }
+    rec_.submit(swapchain_.acquired(), swapchain_.rendered());
+    swapchain_.present();
+    stages_ = rec_.wait();
+    if (statistics.frames.size() < kMeasuredFrames)
+        statistics.addFrame(stages_);
+}
+
+bool WindowedPlayer::finished(uint32_t frames) const
+{
+    return window_.closing() || (options_.frame_count > 0 && frames >= options_.frame_count) ||
+           (options_.sample_count > 0 && renderer_ && renderer_->sampleCount() >= options_.sample_count);
+}
+
+Status WindowedPlayer::play(Statistics& statistics)
+{
+    bool drawable = true;
+    for (uint32_t frames = 0; !finished(frames);)
+    {
+        window_.poll(!drawable);
+        drawable = swapchain_.acquire();
+        if (!drawable)
+        {
+            drawable = fitSurface();
+            continue;
+        }
+        const auto now = Clock::now();
+        const float seconds = std::chrono::duration<float>(now - std::exchange(last_frame_, now)).count();
+        frame_ms_ = seconds * 1000.0;
+        overlay_.begin();
+        useKeys();
+        usePanel();
+        // A slow frame must not throw the camera across the scene.
+        fly_.move(window_.takeFlyInput(!overlay_.wantsKeyboard(), !overlay_.wantsMouse()), std::min(seconds, 0.25f));
+        showFrame(statistics);
+        ++frames;
+    }
+    if (!renderer_) // closed before anything could be seen
+        return Success{};
+    return writeResults(options_, opened_, *renderer_, statistics);
+}
+} // namespace
+
+Status playWindowed(const PlayerOptions& options)
+{
+    Statistics statistics;
+    const auto window = Window::open(fmt::format("Lumicut - {}", options.package.filename().string()), options.width, options.height);
+    if (!window)
+        return window.error();
+    const auto opened = openScene(options, (*window)->instanceExtensions(), statistics);
+    if (!opened)
+        return opened.error();
+    const auto swapchain = Swapchain::create(opened->instance, *opened->device, (*window)->createSurface(opened->instance));
+    if (!swapchain)
+        return swapchain.error();
+    WindowedPlayer player(options, **window, *opened, **swapchain);
+    return player.play(statistics);
+}

@@ -1,0 +1,27 @@
+#!/bin/sh
+# The window, on a virtual display: three validated frames, an exit code of 0 and a picture of the right size; and one
+# sentence with exit code 4 where there is no display.
+# window_test.sh LUMICUT_SCENES LUMICUT_COMPILE LUMICUT_PLAY
+set -eu
+scenes=$1 compile=$2 play=$3
+
+fail() { echo "window_test: $*" >&2; exit 1; }
+command -v xvfb-run >/dev/null || fail "xvfb-run is missing (Debian: xvfb xauth)"
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+
+"$scenes" "$folder" cornell >/dev/null
+"$compile" "$folder/cornell.glb" -o "$folder/cornell.lumi" >"$folder/compile.log" 2>&1 || fail "$(cat "$folder/compile.log")"
+
+xvfb-run -a -s "-screen 0 1280x720x24" "$play" "$folder/cornell.lumi" --size 200x120 --frames 3 --validate \
+    --output "$folder/picture.png" --stats "$folder/stats.json" 2>"$folder/play.log" || fail "exit code $?: $(cat "$folder/play.log")"
+grep -q "validation:" "$folder/play.log" && fail "$(cat "$folder/play.log")"
+grep -q '"samples_per_pixel": 3,' "$folder/stats.json" || fail "not 3 samples a pixel: $(cat "$folder/stats.json")"
+# Signature, then the header chunk: length 13, "IHDR", width 200, height 120.
+header=$(od -An -tx1 -N24 "$folder/picture.png" | tr -d ' \n')
+[ "$header" = 89504e470d0a1a0a0000000d49484452000000c800000078 ] || fail "picture.png begins with $header"
+
+code=0
+env -u DISPLAY -u WAYLAND_DISPLAY "$play" "$folder/cornell.lumi" 2>"$folder/none.log" || code=$?
+[ $code = 4 ] || fail "exit code $code without a display: $(cat "$folder/none.log")"
+grep -q "there is no display.*--headless" "$folder/none.log" || fail "without a display it says: $(cat "$folder/none.log")"
