@@ -25,7 +25,7 @@ namespace
 class Stopwatch
 {
 public:
-    Stopwatch(const CompileOptions& options, std::vector<StageTime>& stages) : options_(options), stages_(stages) {}
+    Stopwatch(const CompileOptions& options, std::vector<CompileStage>& stages) : options_(options), stages_(stages) {}
 
     void stage(const char* name, const std::string& outcome)
     {
@@ -40,7 +40,7 @@ public:
 private:
     using Clock = std::chrono::steady_clock;
     const CompileOptions& options_;
-    std::vector<StageTime>& stages_;
+    std::vector<CompileStage>& stages_;
     Clock::time_point start_ = Clock::now();
     double last_ = 0;
 };

@@ -24,7 +24,7 @@ struct CompileOptions
     std::function<void(double seconds, const std::string& line)> progress{}; // after each stage; may be empty
 };
 
-struct StageTime
+struct CompileStage
 {
     std::string name;
     double seconds = 0;
@@ -41,7 +41,7 @@ struct CompileReport
     uint64_t generated_tangents = 0;
     uint64_t dropped_primitives = 0;
     std::vector<package::WrittenChunk> chunks;
-    std::vector<StageTime> stages;
+    std::vector<CompileStage> stages;
     double total_seconds = 0;
 };
 

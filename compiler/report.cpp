@@ -51,7 +51,7 @@ std::string summaryText(const CompileReport& report, const CompileOptions& optio
     for (const package::WrittenChunk& chunk : report.chunks)
         fmt::format_to(out, " {} {}", chunkLabel(chunk), chunk.stored_bytes);
     fmt::format_to(out, "\n  seconds    {:.2f}:", report.total_seconds);
-    for (const StageTime& stage : report.stages)
+    for (const CompileStage& stage : report.stages)
         fmt::format_to(out, " {} {:.2f}", stage.name, stage.seconds);
     fmt::format_to(out, "\n");
     return text;
@@ -103,7 +103,7 @@ std::string reportJson(const CompileReport& report, const CompileOptions& option
                                   {"stored_bytes", chunk.stored_bytes},
                                   {"raw_bytes", chunk.raw_bytes}});
     json["stages"] = ordered_json::array();
-    for (const StageTime& stage : report.stages)
+    for (const CompileStage& stage : report.stages)
         json["stages"].push_back({{"name", stage.name}, {"seconds", stage.seconds}});
     json["total_seconds"] = report.total_seconds;
     json["warnings"] = report.meta.provenance->warnings;

@@ -5,6 +5,7 @@
 #include "runtime/window_overlay.h"
 #include "runtime/window_panel.h"
 
+#define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
 #include <algorithm>
