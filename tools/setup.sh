@@ -53,25 +53,23 @@ if ((EUID != 0)); then
     command -v sudo >/dev/null || fail "installing needs root; run as root: apt-get install ${missing[*]}"
     as_root=(sudo)
 fi
-# Through env, because sudo keeps no variables.
-apt=("${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -q -y -o Dpkg::Use-Pty=0 -o DPkg::Lock::Timeout=300)
+# sudo keeps neither variables nor descriptors, so both are made behind it: 3 takes apt's status lines to stdout. On 1
+# itself they must not go: apt closes that descriptor for dpkg, and maintainer scripts that print would fail.
+apt=("${as_root[@]}" env DEBIAN_FRONTEND=noninteractive sh -c 'exec apt-get "$@" 3>&1' apt-get
+    -q -y -o Dpkg::Use-Pty=0 -o DPkg::Lock::Timeout=300)
 
 log=$(mktemp)
 trap 'rm -f "$log"' EXIT
 
-# progress WORD: turns apt's status lines (KIND:NAME:PERCENT:TEXT) into a line of ours every 20 percent.
-progress() {
-    awk -F: -v word="$1" 'BEGIN { next_line = 20 }
-        ($1 == "dlstatus" || $1 == "pmstatus") && $3 + 0 >= next_line {
-            print "setup: " word " " int($3 / 20) * 20 " %"; fflush(); next_line = int($3 / 20) * 20 + 20 }'
-}
-
-# phase WORD ARGUMENT...: runs apt-get quietly; what it said is shown only where it fails.
+# phase WORD ARGUMENT...: runs apt-get. Its status lines (KIND:NAME:PERCENT:TEXT) become a line of ours every 20 percent;
+# the rest is shown only where it fails.
 phase() {
     local word=$1
     shift
-    if ! "${apt[@]}" -o APT::Status-Fd=1 "$@" 2>&1 | tee -a "$log" | progress "$word"; then
-        tail -n 20 "$log" >&2
+    if ! "${apt[@]}" -o APT::Status-Fd=3 "$@" 2>&1 | awk -F: -v word="$word" -v log_file="$log" '
+        $1 != "dlstatus" && $1 != "pmstatus" { print >>log_file; next }
+        $3 >= shown + 20 { shown = int($3 / 20) * 20; print "setup: " word " " shown " %"; fflush() }'; then
+        tail -n 40 "$log" >&2
         fail "$word failed; apt-get said the above"
     fi
 }
