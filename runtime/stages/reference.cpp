@@ -1,8 +1,7 @@
 #include "runtime/stages/reference.h"
 
 ReferenceStage::ReferenceStage(const Device& device, const SceneGpu& scene, uint32_t max_pixels, uint32_t max_batch)
-    : generate_(device.kernel("primary/generate")),
-      shade_(device.kernel("reference/shade", scene.constants())),
+    : generate_(device.kernel("primary/generate")), shade_(device.kernel("reference/shade", scene.constants())),
       queue_(device, "reference.queue", max_pixels * max_batch),
       next_queue_(device, "reference.next_queue", max_pixels * max_batch),
       hits_(device.array<gpu::Hit>("reference.hits", max_pixels * max_batch)),
@@ -30,14 +29,28 @@ const Buffer& ReferenceStage::record(Recorder& rec, const RayStage& rays, const 
                                       .pixel_count = pixel_count,
                                       .first_sample = in.camera.first_sample,
                                       .seed = in.camera.seed};
-        rays.closest(rec, *queue, hits_, traceSeed(in.camera.seed, in.camera.first_sample, depth));
+        {
+            const auto trace = rec.scope("reference.closest");
+            rays.closest(rec, *queue, hits_, traceSeed(in.camera.seed, in.camera.first_sample, depth));
+        }
         rays.reset(rec, next->size);
         rays.reset(rec, shadow_size_);
-        rec.runIndirect(shade_, queue->size, 0, params,
-                        {{"Queue", queue->size}, {"Rays", queue->rays}, {"Hits", hits_}, {"States", states_}, {"Radiance", radiance_},
-                         {"NextQueue", next->size}, {"NextRays", next->rays}, {"ShadowQueue", shadow_size_}, {"ShadowRays", shadow_rays_}});
+        {
+            const auto shade = rec.scope("reference.shade");
+            rec.runIndirect(shade_, queue->size, 0, params,
+                            {{"Queue", queue->size},
+                             {"Rays", queue->rays},
+                             {"Hits", hits_},
+                             {"States", states_},
+                             {"Radiance", radiance_},
+                             {"NextQueue", next->size},
+                             {"NextRays", next->rays},
+                             {"ShadowQueue", shadow_size_},
+                             {"ShadowRays", shadow_rays_}});
+        }
         rays.close(rec, next->size);
         rays.close(rec, shadow_size_);
+        const auto visible = rec.scope("reference.visible");
         rays.visible(rec, shadow_size_, shadow_rays_, radiance_);
         std::swap(queue, next);
     }
