@@ -45,6 +45,8 @@ struct BvhTriangle // in leaf order; spatial splits may store one triangle sever
     uint flags;    // kTriangle*
 };
 GPU_SIZE(BvhTriangle, 48);
+GPU_OFFSET(BvhTriangle, v1, 16);
+GPU_OFFSET(BvhTriangle, v2, 32);
 
 // ---- Surfaces ------------------------------------------------------------------------------------------------------
 
@@ -54,6 +56,7 @@ struct Triangle
     uint light;     // index into Lights, kNone where the triangle does not emit
 };
 GPU_SIZE(Triangle, 16);
+GPU_OFFSET(Triangle, light, 12);
 
 struct VertexAttributes
 {
@@ -65,6 +68,8 @@ struct VertexAttributes
     uvec2 color;  // COLOR_0, linear RGBA as 4 halfs (packHalf2x16(rg), packHalf2x16(ba)); 1 where absent
 };
 GPU_SIZE(VertexAttributes, 32);
+GPU_OFFSET(VertexAttributes, uv1, 16);
+GPU_OFFSET(VertexAttributes, color, 24);
 
 // Material.flags
 GPU_CONST uint kMaterialAlphaMask = 1u;   // coverage = alpha >= alpha_cutoff
@@ -97,6 +102,12 @@ struct Material // glTF 2.0 metallic-roughness and the KHR_materials_* extension
     uint specular_color_texture; // sRGB
 };
 GPU_SIZE(Material, 112);
+GPU_OFFSET(Material, emission, 16);
+GPU_OFFSET(Material, metallic, 32);
+GPU_OFFSET(Material, ior, 48);
+GPU_OFFSET(Material, absorption, 68);
+GPU_OFFSET(Material, flags, 80);
+GPU_OFFSET(Material, emissive_texture, 96);
 
 GPU_CONST float kSmoothRoughness = 0.03; // below it a specular lobe is a perfect mirror or a perfect refraction
 
@@ -140,6 +151,9 @@ struct Light
     uint material; // triangle with an emissive texture: its material, else kNone
 };
 GPU_SIZE(Light, 64);
+GPU_OFFSET(Light, p1, 16);
+GPU_OFFSET(Light, p2, 32);
+GPU_OFFSET(Light, emission, 48);
 // Spot falloff (KHR_lights_punctual): clamp(dot(p1, -wi) * cone_scale + cone_offset, 0, 1)^2 with
 // cone_scale = 1 / max(0.001, cos(inner) - cos(outer)), cone_offset = -cos(outer) * cone_scale.
 
@@ -196,13 +210,13 @@ GPU_SIZE(SceneInfo, 48);
 // ---- Descriptor set 0: the scene, the same for every kernel --------------------------------------------------------
 
 GPU_CONST uint kSceneInfoBinding = 0u;
-GPU_CONST uint kBvhNodesBinding = 1u;
+GPU_CONST uint kBvhNodesBinding = 1u; // 1..6: texel buffers, RGBA32UI
 GPU_CONST uint kBvhTrianglesBinding = 2u;
 GPU_CONST uint kTrianglesBinding = 3u;
 GPU_CONST uint kVertexAttributesBinding = 4u;
 GPU_CONST uint kMaterialsBinding = 5u;
-GPU_CONST uint kTextureRefsBinding = 6u;
-GPU_CONST uint kLightsBinding = 7u;
+GPU_CONST uint kLightsBinding = 6u;
+GPU_CONST uint kTextureRefsBinding = 7u; // 7..10: storage buffers
 GPU_CONST uint kLightAliasesBinding = 8u;
 GPU_CONST uint kEnvironmentTexelsBinding = 9u;
 GPU_CONST uint kCausticTargetsBinding = 10u;

@@ -4,6 +4,8 @@
 
 namespace
 {
+constexpr uint64_t kTexelBytes = 16; // RGBA32UI
+
 gpu::vec3 toVec3(const lumicut::fb::Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
 gpu::SceneInfo sceneInfo(const package::Package& package)
@@ -56,10 +58,11 @@ uint32_t sceneFeatures(const package::Package& package)
 Result<std::unique_ptr<SceneGpu>> SceneGpu::create(const Device& device, const package::Package& package)
 {
     std::unique_ptr<SceneGpu> scene(new SceneGpu(device));
-    const uint64_t limit = device.limits().maxStorageBufferRange;
     std::optional<Error> too_large;
     const auto add = [&](const char* name, auto data)
     {
+        const bool texels = scene->buffers_.size() <= gpu::kLightsBinding - gpu::kBvhNodesBinding;
+        const uint64_t limit = texels ? uint64_t(device.limits().maxTexelBufferElements) * kTexelBytes : device.limits().maxStorageBufferRange;
         if (data.size_bytes() > limit)
         {
             too_large = Error{ExitCode::kDevice, fmt::format("the scene's {} take {} MiB, more than the {} MiB that a buffer may "
@@ -75,8 +78,8 @@ Result<std::unique_ptr<SceneGpu>> SceneGpu::create(const Device& device, const p
     add("triangles", package.triangles());
     add("vertices", package.vertexAttributes());
     add("materials", package.materials());
-    add("texture references", package.textureRefs());
     add("lights", package.lights());
+    add("texture references", package.textureRefs());
     add("light aliases", package.lightAliases());
     add("environment texels", package.environmentTexels());
     add("caustic targets", package.causticTargets());
@@ -93,6 +96,8 @@ Result<std::unique_ptr<SceneGpu>> SceneGpu::create(const Device& device, const p
 SceneGpu::~SceneGpu()
 {
     device_.waitIdle();
+    for (const VkBufferView view : texel_views_)
+        vkDestroyBufferView(device_.handle(), view, nullptr);
     vkDestroyDescriptorPool(device_.handle(), pool_, nullptr);
     vkDestroySampler(device_.handle(), texture_sampler_, nullptr);
     vkDestroySampler(device_.handle(), environment_sampler_, nullptr);
@@ -144,10 +149,14 @@ void SceneGpu::createDescriptorSet()
     sampler.addressModeV = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
     vulkanCheck(vkCreateSampler(device_.handle(), &sampler, nullptr, &environment_sampler_));
 
-    const uint32_t buffer_count = uint32_t(buffers_.size());
+    constexpr uint32_t kTexelBufferCount = gpu::kLightsBinding - gpu::kBvhNodesBinding + 1;
+    const uint32_t storage_count = uint32_t(buffers_.size()) - kTexelBufferCount;
+    for (uint32_t b = 0; b < kTexelBufferCount; ++b)
+        texel_views_.push_back(device_.texelView(buffers_[b], VK_FORMAT_R32G32B32A32_UINT));
     const std::array sizes{
         VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1},
-        VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, buffer_count},
+        VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, kTexelBufferCount},
+        VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, storage_count},
         VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, gpu::kTexturePageCount + 1},
     };
     const VkDescriptorPoolCreateInfo pool{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
@@ -183,7 +192,12 @@ void SceneGpu::createDescriptorSet()
                           .pBufferInfo = buffer});
     };
     write(gpu::kSceneInfoBinding, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1, &buffers[0], nullptr);
-    for (uint32_t b = 0; b < buffer_count; ++b)
+    for (uint32_t b = 0; b < kTexelBufferCount; ++b)
+    {
+        write(gpu::kBvhNodesBinding + b, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, 1, nullptr, nullptr);
+        writes.back().pTexelBufferView = &texel_views_[b];
+    }
+    for (uint32_t b = kTexelBufferCount; b < buffers_.size(); ++b)
         write(gpu::kBvhNodesBinding + b, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, &buffers[b + 1], nullptr);
     write(gpu::kTexturePagesBinding, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, gpu::kTexturePageCount, nullptr, images.data());
     write(gpu::kEnvironmentMapBinding, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 1, nullptr, &images.back());

@@ -71,7 +71,9 @@ void Device::createLayouts()
     const auto add = [&](uint32_t binding, VkDescriptorType type, uint32_t count)
     { bindings.push_back({.binding = binding, .descriptorType = type, .descriptorCount = count, .stageFlags = VK_SHADER_STAGE_COMPUTE_BIT}); };
     add(gpu::kSceneInfoBinding, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1);
-    for (uint32_t b = gpu::kBvhNodesBinding; b <= gpu::kCausticTargetsBinding; ++b)
+    for (uint32_t b = gpu::kBvhNodesBinding; b <= gpu::kLightsBinding; ++b)
+        add(b, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, 1);
+    for (uint32_t b = gpu::kTextureRefsBinding; b <= gpu::kCausticTargetsBinding; ++b)
         add(b, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1);
     add(gpu::kTexturePagesBinding, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, gpu::kTexturePageCount);
     add(gpu::kEnvironmentMapBinding, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 1);
@@ -269,7 +271,7 @@ Buffer Device::buffer(std::string_view name, uint64_t bytes, Placement placement
     const VkBufferCreateInfo info{
         .sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
         .size = bytes,
-        .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT |
+        .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT |
                  VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
     };
     vulkanCheck(vkCreateBuffer(device_, &info, nullptr, &buffer.buffer_));
@@ -287,6 +289,17 @@ Buffer Device::buffer(std::string_view name, uint64_t bytes, Placement placement
     }
     nameObject(VK_OBJECT_TYPE_BUFFER, uint64_t(buffer.buffer_), name);
     return buffer;
+}
+
+VkBufferView Device::texelView(const Buffer& buffer, VkFormat format) const
+{
+    const VkBufferViewCreateInfo info{.sType = VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO,
+                                      .buffer = buffer.handle(),
+                                      .format = format,
+                                      .range = VK_WHOLE_SIZE};
+    VkBufferView view = VK_NULL_HANDLE;
+    vulkanCheck(vkCreateBufferView(device_, &info, nullptr, &view));
+    return view;
 }
 
 template <typename Record>

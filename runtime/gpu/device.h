@@ -46,6 +46,9 @@ public:
     /// An image in shader-read layout; `data` is laid out level by level, layer by layer, tightly packed.
     Image uploadImage(std::string_view name, const ImageShape& shape, std::span<const std::byte> data) const;
 
+    /// A view of a whole buffer for texelFetch; the caller destroys it.
+    VkBufferView texelView(const Buffer& buffer, VkFormat format) const;
+
     /// Copies a buffer's contents to the CPU; waits for the queue.
     template <typename T>
     std::vector<T> download(const Buffer& source, uint64_t count) const

@@ -88,8 +88,8 @@ std::vector<std::string> missingFeatures(VkPhysicalDevice device, const VkPhysic
     need(f13.maintenance4, "maintenance4: workgroup sizes given by constants");
     need(hasExtension(device, VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME), "VK_KHR_push_descriptor: every kernel's buffers");
     need(properties.limits.maxPushConstantsSize >= 128, "128 bytes of push constants: kernel parameters");
-    need(properties.limits.maxPerStageDescriptorStorageBuffers >= 26, "26 storage buffers a stage: scene and stage buffers");
-    need(properties.limits.maxPerStageDescriptorSampledImages >= 17, "17 sampled images a stage: texture pages");
+    need(properties.limits.maxPerStageDescriptorStorageBuffers >= 20, "20 storage buffers a stage: scene and stage buffers");
+    need(properties.limits.maxPerStageDescriptorSampledImages >= 23, "23 sampled images a stage: texture pages, scene data");
     need(properties.limits.maxComputeWorkGroupInvocations >= 256, "workgroups of 256 invocations");
     return lacks;
 }

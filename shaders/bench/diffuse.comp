@@ -25,8 +25,8 @@ void main()
     if (i >= queue.count || hits[i].slot == kNone)
         return;
     uint slot = hits[i].slot;
-    vec3 v0 = bvh_triangles[slot].v0;
-    vec3 normal = normalize(cross(bvh_triangles[slot].v1 - v0, bvh_triangles[slot].v2 - v0));
+    vec3 v0 = loadBvhTriangle(slot).v0;
+    vec3 normal = normalize(cross(loadBvhTriangle(slot).v1 - v0, loadBvhTriangle(slot).v2 - v0));
     normal = dot(normal, rays[i].direction) > 0.0 ? -normal : normal;
     Sampler s = Sampler(hash(params.seed, rays[i].path), 0u, 0u);
     vec2 u = nextPair(s);

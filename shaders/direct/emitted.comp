@@ -32,7 +32,7 @@ void main()
             radiance[path] += ray.throughput * light * misWeight(ray.pdf, environmentPdf(direction));
         return;
     }
-    uint light = triangles[bvh_triangles[hit.slot].triangle].light;
+    uint light = loadTriangle(loadBvhTriangle(hit.slot).triangle).light;
     if (light == kNone)
         return;
     Surface s = surfaceAt(hit.slot, hit.barycentrics, direction);

@@ -34,7 +34,7 @@ BoxRay boxRay(vec3 origin, vec3 direction)
     return ray;
 }
 
-vec4 nodeRow(uint row) { return uintBitsToFloat(bvh_rows[row]); }
+vec4 nodeRow(uint row) { return uintBitsToFloat(texelFetch(bvh_nodes, int(row))); }
 
 /// Entry distances of a ray into a node's four boxes; kInfinity where it misses.
 vec4 hitBoxes(uint node, BoxRay ray, float t_max)
@@ -48,16 +48,16 @@ vec4 hitBoxes(uint node, BoxRay ray, float t_max)
     return mix(vec4(kInfinity), enter, lessThanEqual(enter, leave));
 }
 
-uvec4 nodeChildren(uint node) { return bvh_rows[node * kBvhNodeRows + 6u]; }
+uvec4 nodeChildren(uint node) { return texelFetch(bvh_nodes, int(node * kBvhNodeRows + 6u)); }
 
 /// Watertight along shared edges: the edge functions of two neighbours are exact negatives of each other
 /// (Davidovic et al. 2012, "3D Rasterization", in the sum-and-difference form, which FMA contraction cannot break).
 /// @return whether it is met between t_min (exclusive) and hit.t, which then is it
 bool hitTriangle(uint slot, vec3 origin, vec3 direction, float t_min, inout Hit hit)
 {
-    vec3 a = bvh_triangles[slot].v0 - origin;
-    vec3 b = bvh_triangles[slot].v1 - origin;
-    vec3 c = bvh_triangles[slot].v2 - origin;
+    vec3 a = loadBvhTriangle(slot).v0 - origin;
+    vec3 b = loadBvhTriangle(slot).v1 - origin;
+    vec3 c = loadBvhTriangle(slot).v2 - origin;
     vec3 e0 = c - a, e1 = a - b, e2 = b - c;
     float u = dot(cross(c + a, e0), direction); // weight of v1
     float v = dot(cross(a + b, e1), direction); // weight of v2
@@ -173,7 +173,7 @@ bool anyOpaqueTriangle(vec3 origin, vec3 direction, float t_max, out bool met_tr
             Hit hit = Hit(t_max, kNone, vec2(0.0));
             if (!hitTriangle(slot, origin, direction, 0.0, hit))
                 continue;
-            if (!kSceneHasTranslucency || bvh_triangles[slot].flags == 0u)
+            if (!kSceneHasTranslucency || loadBvhTriangle(slot).flags == 0u)
                 return true;
             met_translucent = true;
         }

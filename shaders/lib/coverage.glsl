@@ -7,22 +7,22 @@
 /// Fraction of light that the surface stops: 1 opaque, mask 0 or 1, blend its alpha (glTF 2.0, 3.9.4).
 float surfaceCoverage(uint slot, vec2 barycentrics)
 {
-    uint material = bvh_triangles[slot].material;
-    uint flags = materials[material].flags;
-    uvec3 v = triangles[bvh_triangles[slot].triangle].vertices;
+    uint material = loadBvhTriangle(slot).material;
+    uint flags = loadMaterial(material).flags;
+    uvec3 v = loadTriangle(loadBvhTriangle(slot).triangle).vertices;
     vec3 weights = vec3(1.0 - barycentrics.x - barycentrics.y, barycentrics);
-    float alpha = materials[material].alpha;
-    alpha *= dot(weights, vec3(unpackHalf2x16(vertices[v.x].color.y).y, unpackHalf2x16(vertices[v.y].color.y).y,
-                               unpackHalf2x16(vertices[v.z].color.y).y));
-    uint ref = materials[material].base_color_texture;
+    float alpha = loadMaterial(material).alpha;
+    alpha *= dot(weights, vec3(unpackHalf2x16(loadVertex(v.x).color.y).y, unpackHalf2x16(loadVertex(v.y).color.y).y,
+                               unpackHalf2x16(loadVertex(v.z).color.y).y));
+    uint ref = loadMaterial(material).base_color_texture;
     if (ref != kNone)
     {
-        vec2 uv0 = weights.x * vertices[v.x].uv0 + weights.y * vertices[v.y].uv0 + weights.z * vertices[v.z].uv0;
-        vec2 uv1 = weights.x * vertices[v.x].uv1 + weights.y * vertices[v.y].uv1 + weights.z * vertices[v.z].uv1;
+        vec2 uv0 = weights.x * loadVertex(v.x).uv0 + weights.y * loadVertex(v.y).uv0 + weights.z * loadVertex(v.z).uv0;
+        vec2 uv1 = weights.x * loadVertex(v.x).uv1 + weights.y * loadVertex(v.y).uv1 + weights.z * loadVertex(v.z).uv1;
         alpha *= sampleTexture(ref, uv0, uv1, 0.0).a;
     }
     if ((flags & kMaterialAlphaMask) != 0u)
-        return alpha >= materials[material].alpha_cutoff ? 1.0 : 0.0;
+        return alpha >= loadMaterial(material).alpha_cutoff ? 1.0 : 0.0;
     return (flags & kMaterialAlphaBlend) != 0u ? clamp(alpha, 0.0, 1.0) : 1.0;
 }
 

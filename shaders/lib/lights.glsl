@@ -35,7 +35,7 @@ vec3 environmentRadiance(vec3 d)
     vec2 uv = directionToEnvironment(d);
     float rows = float(textureSize(environment_map, 0).y);
     uv.y = clamp(uv.y, 0.5 / rows, 1.0 - 0.5 / rows);
-    return lights[scene.environment_light].emission * textureLod(environment_map, uv, 0.0).rgb;
+    return loadLight(scene.environment_light).emission * textureLod(environment_map, uv, 0.0).rgb;
 }
 
 /// Solid-angle density with which sampleLight() finds direction d, selection included.
@@ -47,13 +47,13 @@ float environmentPdf(vec3 d)
     uvec2 texel = min(uvec2(directionToEnvironment(d) * size), scene.environment_importance_size - 1u);
     float sin_theta = sqrt(max(1e-12, 1.0 - d.y * d.y));
     float probability = environment_texels[texel.y * scene.environment_importance_size.x + texel.x].probability;
-    return lights[scene.environment_light].pmf * probability * size.x * size.y / (2.0 * kPi * kPi * sin_theta);
+    return loadLight(scene.environment_light).pmf * probability * size.x * size.y / (2.0 * kPi * kPi * sin_theta);
 }
 
 /// The same for a point on an emissive triangle seen at `distance` under `cosine`.
 float trianglePdf(uint light, float area, float distance, float cosine)
 {
-    return lights[light].pmf * distance * distance / max(area * cosine, 1e-20);
+    return loadLight(light).pmf * distance * distance / max(area * cosine, 1e-20);
 }
 
 LightSample sampleEnvironment(float pmf, uvec2 pick, vec2 u)
@@ -99,9 +99,9 @@ LightSample sampleTriangle(Light light, uint index, vec3 point, vec2 u)
     vec3 emission = light.emission;
     if (hasFeature(kFeatureEmissiveMaps) && light.material != kNone)
     {
-        uvec3 v = triangles[light.triangle].vertices;
-        vec2 uv0 = interpolate(weights, vertices[v.x].uv0, vertices[v.y].uv0, vertices[v.z].uv0);
-        vec2 uv1 = interpolate(weights, vertices[v.x].uv1, vertices[v.y].uv1, vertices[v.z].uv1);
+        uvec3 v = loadTriangle(light.triangle).vertices;
+        vec2 uv0 = interpolate(weights, loadVertex(v.x).uv0, loadVertex(v.y).uv0, loadVertex(v.z).uv0);
+        vec2 uv1 = interpolate(weights, loadVertex(v.x).uv1, loadVertex(v.y).uv1, loadVertex(v.z).uv1);
         emission = surfaceEmission(light.material, uv0, uv1);
     }
     float pdf = trianglePdf(index, 0.5 * doubled, distance, cosine);
@@ -123,7 +123,7 @@ LightSample sampleLight(vec3 point, inout Sampler s)
     uint i = toIndex(pick.x, scene.light_count);
     if (toUnitFloat(pick.y) >= light_aliases[i].threshold)
         i = light_aliases[i].alias;
-    Light light = lights[i];
+    Light light = loadLight(i);
     if (hasFeature(kFeatureEnvironment) && light.kind == kLightEnvironment)
         return sampleEnvironment(light.pmf, texel_pick, u);
     if (hasFeature(kFeatureTriangleLights) && (light.kind == kLightTriangle || light.kind == kLightTriangleTwoSided))

@@ -15,7 +15,7 @@ Sampler vertexSampler(uint path, uint depth, uint pixel_count, uint first_sample
 /// What an absorbing medium leaves of light over `distance` metres (Beer-Lambert).
 vec3 mediumTransmittance(uint medium, float distance)
 {
-    return medium == kNone ? vec3(1.0) : exp(-materials[medium].absorption * distance);
+    return medium == kNone ? vec3(1.0) : exp(-loadMaterial(medium).absorption * distance);
 }
 
 bool enclosesMedium(Surface s, SurfaceMaterial m)

@@ -12,17 +12,64 @@ const bool kSceneHasThin = (kSceneFeatures & kFeatureThin) != 0u;
 const bool kSceneHasTranslucency = (kSceneFeatures & (kFeatureAlpha | kFeatureThin)) != 0u;
 
 layout(set = 0, binding = kSceneInfoBinding, scalar) uniform SceneBlock { SceneInfo scene; };
-layout(set = 0, binding = kBvhNodesBinding, scalar) readonly buffer BvhNodes { uvec4 bvh_rows[]; };
-const uint kBvhNodeRows = 7u; // BvhNode as rows: min x, max x, min y, max y, min z, max z, children
-layout(set = 0, binding = kBvhTrianglesBinding, scalar) readonly buffer BvhTriangles { BvhTriangle bvh_triangles[]; };
-layout(set = 0, binding = kTrianglesBinding, scalar) readonly buffer Triangles { Triangle triangles[]; };
-layout(set = 0, binding = kVertexAttributesBinding, scalar) readonly buffer Vertices { VertexAttributes vertices[]; };
-layout(set = 0, binding = kMaterialsBinding, scalar) readonly buffer Materials { Material materials[]; };
+// What every ray reads lies in texel buffers of four 32-bit words a texel: software Vulkan fetches a texel with one wide
+// load, where a storage buffer costs it one bounds-checked load a word (twice the rays a second; no difference on a GPU).
+layout(set = 0, binding = kBvhNodesBinding) uniform usamplerBuffer bvh_nodes;
+layout(set = 0, binding = kBvhTrianglesBinding) uniform usamplerBuffer bvh_triangles;
+layout(set = 0, binding = kTrianglesBinding) uniform usamplerBuffer triangles;
+layout(set = 0, binding = kVertexAttributesBinding) uniform usamplerBuffer vertices;
+layout(set = 0, binding = kMaterialsBinding) uniform usamplerBuffer materials;
+layout(set = 0, binding = kLightsBinding) uniform usamplerBuffer lights;
 layout(set = 0, binding = kTextureRefsBinding, scalar) readonly buffer TextureRefs { TextureRef texture_refs[]; };
-layout(set = 0, binding = kLightsBinding, scalar) readonly buffer Lights { Light lights[]; };
 layout(set = 0, binding = kLightAliasesBinding, scalar) readonly buffer LightAliases { AliasEntry light_aliases[]; };
 layout(set = 0, binding = kEnvironmentTexelsBinding, scalar) readonly buffer EnvironmentTexels { EnvironmentTexel environment_texels[]; };
 layout(set = 0, binding = kTexturePagesBinding) uniform sampler2DArray texture_pages[kTexturePageCount];
 layout(set = 0, binding = kEnvironmentMapBinding) uniform sampler2D environment_map;
+
+// ---- The structs of gpu_scene.h from their texels (GPU_OFFSET there pins the rows). Texels whose members are not used
+// are not fetched.
+
+const uint kBvhNodeRows = 7u; // min x, max x, min y, max y, min z, max z, children; fetched row by row in lib/bvh.glsl
+
+BvhTriangle loadBvhTriangle(uint slot)
+{
+    uvec4 a = texelFetch(bvh_triangles, int(3u * slot));
+    uvec4 b = texelFetch(bvh_triangles, int(3u * slot + 1u));
+    uvec4 c = texelFetch(bvh_triangles, int(3u * slot + 2u));
+    return BvhTriangle(uintBitsToFloat(a.xyz), a.w, uintBitsToFloat(b.xyz), b.w, uintBitsToFloat(c.xyz), c.w);
+}
+
+Triangle loadTriangle(uint index)
+{
+    uvec4 a = texelFetch(triangles, int(index));
+    return Triangle(a.xyz, a.w);
+}
+
+VertexAttributes loadVertex(uint index)
+{
+    uvec4 a = texelFetch(vertices, int(2u * index));
+    uvec4 b = texelFetch(vertices, int(2u * index + 1u));
+    return VertexAttributes(a.x, a.y, uintBitsToFloat(a.zw), uintBitsToFloat(b.xy), b.zw);
+}
+
+Material loadMaterial(uint index)
+{
+    int row = int(7u * index);
+    vec4 a = uintBitsToFloat(texelFetch(materials, row)), b = uintBitsToFloat(texelFetch(materials, row + 1));
+    vec4 c = uintBitsToFloat(texelFetch(materials, row + 2)), d = uintBitsToFloat(texelFetch(materials, row + 3));
+    vec4 e = uintBitsToFloat(texelFetch(materials, row + 4));
+    uvec4 f = texelFetch(materials, row + 5), g = texelFetch(materials, row + 6);
+    return Material(a.xyz, a.w, b.xyz, b.w, c.x, c.y, c.z, c.w, d.x, d.y, vec3(d.zw, e.x), e.yzw, f.x, f.y, f.z, f.w, g.x, g.y,
+                    g.z, g.w);
+}
+
+Light loadLight(uint index)
+{
+    int row = int(4u * index);
+    uvec4 a = texelFetch(lights, row), b = texelFetch(lights, row + 1);
+    uvec4 c = texelFetch(lights, row + 2), d = texelFetch(lights, row + 3);
+    return Light(uintBitsToFloat(a.xyz), a.w, uintBitsToFloat(b.xyz), b.w, uintBitsToFloat(c.xyz), uintBitsToFloat(c.w),
+                 uintBitsToFloat(d.xyz), d.w);
+}
 
 #endif

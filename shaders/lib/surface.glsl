@@ -37,7 +37,7 @@ vec4 interpolate(vec3 weights, vec4 a, vec4 b, vec4 c) { return weights.x * a + 
 
 vec4 vertexColor(uint vertex)
 {
-    return vec4(unpackHalf2x16(vertices[vertex].color.x), unpackHalf2x16(vertices[vertex].color.y));
+    return vec4(unpackHalf2x16(loadVertex(vertex).color.x), unpackHalf2x16(loadVertex(vertex).color.y));
 }
 
 /// Tangent with the sign of the bitangent in w; layout as in gpu_scene.h.
@@ -51,14 +51,14 @@ vec4 unpackTangent(uint bits)
 /// Shading normal bent by the material's normal map (glTF 2.0, 3.9.3).
 vec3 mappedNormal(vec3 normal, uvec3 v, vec3 weights, Surface s)
 {
-    vec4 tangent = unpackTangent(vertices[v.x].tangent);
-    vec3 t = interpolate(weights, tangent.xyz, unpackTangent(vertices[v.y].tangent).xyz, unpackTangent(vertices[v.z].tangent).xyz);
+    vec4 tangent = unpackTangent(loadVertex(v.x).tangent);
+    vec3 t = interpolate(weights, tangent.xyz, unpackTangent(loadVertex(v.y).tangent).xyz, unpackTangent(loadVertex(v.z).tangent).xyz);
     t -= normal * dot(normal, t);
     if (dot(t, t) < 1e-12)
         return normal;
     t = normalize(t);
-    vec3 texel = sampleTexture(materials[s.material].normal_texture, s.uv0, s.uv1, 0.0).xyz * 2.0 - 1.0;
-    texel.xy *= materials[s.material].normal_scale;
+    vec3 texel = sampleTexture(loadMaterial(s.material).normal_texture, s.uv0, s.uv1, 0.0).xyz * 2.0 - 1.0;
+    texel.xy *= loadMaterial(s.material).normal_scale;
     vec3 bent = texel.x * t + texel.y * tangent.w * cross(normal, t) + texel.z * normal;
     return dot(bent, bent) > 1e-12 ? normalize(bent) : normal;
 }
@@ -68,22 +68,22 @@ Surface surfaceAt(uint slot, vec2 barycentrics, vec3 direction)
 {
     Surface s;
     vec3 weights = vec3(1.0 - barycentrics.x - barycentrics.y, barycentrics);
-    vec3 v0 = bvh_triangles[slot].v0, v1 = bvh_triangles[slot].v1, v2 = bvh_triangles[slot].v2;
+    vec3 v0 = loadBvhTriangle(slot).v0, v1 = loadBvhTriangle(slot).v1, v2 = loadBvhTriangle(slot).v2;
     s.position = interpolate(weights, v0, v1, v2);
-    s.triangle = bvh_triangles[slot].triangle;
-    s.material = bvh_triangles[slot].material;
+    s.triangle = loadBvhTriangle(slot).triangle;
+    s.material = loadBvhTriangle(slot).material;
     vec3 twice_area = cross(v1 - v0, v2 - v0);
     float doubled = length(twice_area);
     s.area = 0.5 * doubled;
     s.geometric_normal = twice_area / doubled;
-    uvec3 v = triangles[s.triangle].vertices;
-    s.uv0 = interpolate(weights, vertices[v.x].uv0, vertices[v.y].uv0, vertices[v.z].uv0);
-    s.uv1 = interpolate(weights, vertices[v.x].uv1, vertices[v.y].uv1, vertices[v.z].uv1);
+    uvec3 v = loadTriangle(s.triangle).vertices;
+    s.uv0 = interpolate(weights, loadVertex(v.x).uv0, loadVertex(v.y).uv0, loadVertex(v.z).uv0);
+    s.uv1 = interpolate(weights, loadVertex(v.x).uv1, loadVertex(v.y).uv1, loadVertex(v.z).uv1);
     s.color = interpolate(weights, vertexColor(v.x), vertexColor(v.y), vertexColor(v.z));
-    vec3 normal = interpolate(weights, unpackNormal(vertices[v.x].normal), unpackNormal(vertices[v.y].normal),
-                              unpackNormal(vertices[v.z].normal));
+    vec3 normal = interpolate(weights, unpackNormal(loadVertex(v.x).normal), unpackNormal(loadVertex(v.y).normal),
+                              unpackNormal(loadVertex(v.z).normal));
     s.normal = dot(normal, normal) > 1e-12 ? normalize(normal) : s.geometric_normal;
-    if (hasFeature(kFeatureNormalMaps) && materials[s.material].normal_texture != kNone)
+    if (hasFeature(kFeatureNormalMaps) && loadMaterial(s.material).normal_texture != kNone)
         s.normal = mappedNormal(s.normal, v, weights, s);
 
     s.front = dot(s.geometric_normal, direction) < 0.0;
@@ -101,8 +101,8 @@ Surface surfaceAt(uint slot, vec2 barycentrics, vec3 direction)
 
 vec3 surfaceEmission(uint material, vec2 uv0, vec2 uv1)
 {
-    vec3 emission = materials[material].emission;
-    uint ref = materials[material].emissive_texture;
+    vec3 emission = loadMaterial(material).emission;
+    uint ref = loadMaterial(material).emissive_texture;
     if (hasFeature(kFeatureEmissiveMaps) && ref != kNone && emission != vec3(0.0))
         emission *= sampleTexture(ref, uv0, uv1, 0.0).rgb;
     return emission;
@@ -112,20 +112,20 @@ vec3 surfaceEmission(uint material, vec2 uv0, vec2 uv1)
 SurfaceMaterial materialAt(Surface s)
 {
     SurfaceMaterial m;
-    m.flags = materials[s.material].flags;
-    m.base_color = materials[s.material].base_color * s.color.rgb;
-    m.metallic = materials[s.material].metallic;
-    m.roughness = materials[s.material].roughness;
-    m.transmission = materials[s.material].transmission;
-    m.specular = materials[s.material].specular;
-    m.specular_color = materials[s.material].specular_color;
-    m.ior = materials[s.material].ior;
+    m.flags = loadMaterial(s.material).flags;
+    m.base_color = loadMaterial(s.material).base_color * s.color.rgb;
+    m.metallic = loadMaterial(s.material).metallic;
+    m.roughness = loadMaterial(s.material).roughness;
+    m.transmission = loadMaterial(s.material).transmission;
+    m.specular = loadMaterial(s.material).specular;
+    m.specular_color = loadMaterial(s.material).specular_color;
+    m.ior = loadMaterial(s.material).ior;
     m.emission = surfaceEmission(s.material, s.uv0, s.uv1);
 
-    uint ref = materials[s.material].base_color_texture;
+    uint ref = loadMaterial(s.material).base_color_texture;
     if (ref != kNone)
         m.base_color *= sampleTexture(ref, s.uv0, s.uv1, 0.0).rgb;
-    ref = materials[s.material].metallic_roughness_texture;
+    ref = loadMaterial(s.material).metallic_roughness_texture;
     if (hasFeature(kFeatureMetallicRoughnessMaps) && ref != kNone)
     {
         vec4 texel = sampleTexture(ref, s.uv0, s.uv1, 0.0);
@@ -134,18 +134,18 @@ SurfaceMaterial materialAt(Surface s)
     }
     if (!hasFeature(kFeatureRareMaps))
         return m;
-    ref = materials[s.material].transmission_texture;
+    ref = loadMaterial(s.material).transmission_texture;
     if (ref != kNone)
         m.transmission *= sampleTexture(ref, s.uv0, s.uv1, 0.0).r;
-    ref = materials[s.material].specular_texture;
+    ref = loadMaterial(s.material).specular_texture;
     if (ref != kNone)
         m.specular *= sampleTexture(ref, s.uv0, s.uv1, 0.0).a;
-    ref = materials[s.material].specular_color_texture;
+    ref = loadMaterial(s.material).specular_color_texture;
     if (ref != kNone)
         m.specular_color *= sampleTexture(ref, s.uv0, s.uv1, 0.0).rgb;
     return m;
 }
 
-bool emits(Surface s) { return s.front || (materials[s.material].flags & kMaterialDoubleSided) != 0u; }
+bool emits(Surface s) { return s.front || (loadMaterial(s.material).flags & kMaterialDoubleSided) != 0u; }
 
 #endif

@@ -17,7 +17,7 @@ Hit closestHit(vec3 origin, vec3 direction, float t_max, uint seed)
     for (uint layer = 0u; layer < kMaxLayers; ++layer)
     {
         hit = nearestTriangle(origin, direction, t, t_max);
-        if (!kSceneHasAlpha || hit.slot == kNone || (bvh_triangles[hit.slot].flags & kTriangleAlpha) == 0u)
+        if (!kSceneHasAlpha || hit.slot == kNone || (loadBvhTriangle(hit.slot).flags & kTriangleAlpha) == 0u)
             break;
         if (toUnitFloat(hash(seed, layer)) < surfaceCoverage(hit.slot, hit.barycentrics))
             break;
@@ -29,7 +29,7 @@ Hit closestHit(vec3 origin, vec3 direction, float t_max, uint seed)
 /// What a translucent surface lets straight through: what it does not cover, and thin smooth transmission of the rest.
 vec3 layerTransmittance(Hit hit, vec3 direction)
 {
-    uint flags = bvh_triangles[hit.slot].flags;
+    uint flags = loadBvhTriangle(hit.slot).flags;
     float coverage = (flags & kTriangleAlpha) != 0u ? surfaceCoverage(hit.slot, hit.barycentrics) : 1.0;
     vec3 thin = vec3(0.0);
     if (kSceneHasThin && (flags & kTriangleThin) != 0u)

@@ -44,7 +44,7 @@ vec3 emittedLight(Surface s, SurfaceMaterial m, vec3 direction, PathState state)
 {
     if (m.emission == vec3(0.0) || !emits(s))
         return vec3(0.0);
-    uint light = triangles[s.triangle].light;
+    uint light = loadTriangle(s.triangle).light;
     if (state.pdf == 0.0 || light == kNone)
         return m.emission;
     float cosine = abs(dot(s.geometric_normal, direction));
