@@ -40,7 +40,7 @@ void declare(CLI::App& app, Arguments& a)
     app.add_option(
            "--view", a.views,
            "Camera: NAME=EX,EY,EZ,TX,TY,TZ,YFOV; eye, target (metres), vertical field of view (degrees). Repeatable")
-        ->take_all();
+        ->allow_extra_args(false); // else it takes the scene after it
     app.add_flag("--no-default-light", a.no_default_light, "Leave a scene without any light dark");
     app.add_option("--report", a.report, "Write what was made as JSON");
     app.add_option("--compress", a.compress, "none, zstd or zstd:LEVEL (1-19)")->capture_default_str();
@@ -143,6 +143,7 @@ Status writeReport(const std::string& path, const std::string& json)
 int main(int argc, char** argv)
 {
     CLI::App app{"Compiles a glTF scene into a package for lumicut-play.", "lumicut-compile"};
+    app.footer("Exit codes: 0 ok, 1 usage, 2 I/O, 3 invalid scene, 4 out of memory, 5 unsupported.");
     Arguments arguments;
     declare(app, arguments);
     try
@@ -151,7 +152,9 @@ int main(int argc, char** argv)
     }
     catch (const CLI::ParseError& e)
     {
-        return app.exit(e) == 0 ? int(ExitCode::kOk) : int(ExitCode::kUsage);
+        if (e.get_exit_code() == 0) // --help, --version
+            return app.exit(e);
+        return fail("lumicut-compile", {ExitCode::kUsage, fmt::format("{} (see --help)", e.what())});
     }
     const Result<CompileOptions> options = toOptions(arguments);
     if (!options)

@@ -67,8 +67,9 @@ int main(int argc, char** argv)
     app.add_option("package", options.package, "the .lumi file");
     app.add_flag("--headless", options.headless, "render without a window");
     app.add_option("--size", size, "picture size in pixels, WIDTHxHEIGHT")->capture_default_str();
-    app.add_option("--frames", options.frame_count, "frames to render (headless default 1; in a window: no end)")->check(CLI::PositiveNumber);
-    app.add_option("--spp", options.sample_count, "samples a pixel to render")->check(CLI::PositiveNumber);
+    app.add_option("--frames", options.frame_count, "frames to render (headless default 1; in a window: no end)")
+        ->check(CLI::Range(1u, UINT32_MAX));
+    app.add_option("--spp", options.sample_count, "samples a pixel to render")->check(CLI::Range(1u, UINT32_MAX));
     app.add_option("--output", options.output, "picture to write at the end: .exr (linear) or .png");
     app.add_option("--mode", mode, "direct or reference")->check(CLI::IsMember({"direct", "reference"}))->capture_default_str();
     app.add_option("--camera", options.camera, "camera by name or index; default the first");
@@ -76,7 +77,8 @@ int main(int argc, char** argv)
     app.add_option("--device", options.device, "index, part of a name, or cpu; default the best suitable one");
     app.add_flag("--list-devices", list_devices, "list Vulkan devices and what each one lacks");
     app.add_option("--stats", options.stats, "write times and counts as JSON");
-    app.add_option("--set", assignments, "change a setting, name=value; may be repeated");
+    app.add_option("--set", assignments, "change a setting, name=value; may be repeated")
+        ->allow_extra_args(false); // else it takes the package after it
     app.add_flag("--validate", options.validation, "run with the Vulkan validation layers; a message stops the program");
     try
     {
@@ -84,7 +86,9 @@ int main(int argc, char** argv)
     }
     catch (const CLI::ParseError& error)
     {
-        return app.exit(error) == 0 ? int(ExitCode::kOk) : int(ExitCode::kUsage);
+        if (error.get_exit_code() == 0) // --help, --version
+            return app.exit(error);
+        return fail("lumicut-play", {ExitCode::kUsage, fmt::format("{} (see --help)", error.what())});
     }
     if (list_devices)
         return listDevices(options.validation);

@@ -152,6 +152,7 @@ TEST_F(Player, RefusesArgumentsThatMakeNoSense)
     const std::string scene = path("scene.lumi") + " ";
     const std::string output = " --output " + path("out.exr");
     expectPlayRefused("", 1, "a package is needed");
+    expectPlayRefused("--frames 0 " + scene, 1, "lumicut-play: error: --frames: ");
     expectPlayRefused(scene + "--nonsense" + output, 1, "--nonsense");
     expectPlayRefused(scene + "--mode fast" + output, 1, "--mode");
     for (const std::string size : {"640", "0x10", "10x", "-4x4", "9000x10", "4x4x4", "axb"})
@@ -240,6 +241,14 @@ TEST_F(Player, RendersTheSameBytesForTheSameSeedAndOthersForAnother)
     }
 }
 
+TEST_F(Player, OptionsMayStandBeforeTheFile)
+{
+    const ProgramRun compiled = compile("-q --view a=0,1,4,0,1,0,40 --view b=0,3,4,0,0,0,40 " + path("scene.gltf"));
+    EXPECT_EQ(compiled.exit_code, 0) << compiled.err;
+    const ProgramRun run = play("--camera b --set exposure=1 --set tonemap=srgb " + path("scene.lumi"));
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+}
+
 TEST_F(Player, RendersOnWhenItsPipelineCacheIsDamaged)
 {
     ::setenv("XDG_CACHE_HOME", (folder_ / "cache").c_str(), 1);
@@ -277,6 +286,7 @@ TEST_F(Player, FailedCompilationsLeaveNothingBehind)
     };
     refused(path("scene.gltf") + " -o " + path("folder.lumi"), 2, "folder");
     refused(path("scene.gltf") + " -o /proc/out.lumi", 2, "cannot create");
+    refused("--nonsense", 1, "lumicut-compile: error: ");
     std::filesystem::resize_file(folder_ / "square.bin", 40);
     refused(path("scene.gltf"), 3, "");
     std::filesystem::remove(folder_ / "square.bin");
