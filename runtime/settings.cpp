@@ -41,7 +41,8 @@ std::optional<double> parseValue(const Knob& knob, std::string_view text)
     if (error != std::errc() || stop != text.data() + text.size() || !names.empty())
         return std::nullopt;
     const bool whole = std::holds_alternative<uint32_t Settings::*>(knob.member);
-    return value < knob.least || value > knob.most || (whole && value != std::floor(value)) ? std::nullopt : std::optional(value);
+    const bool in_range = value >= knob.least && value <= knob.most; // not so for NaN
+    return in_range && (!whole || value == std::floor(value)) ? std::optional(value) : std::nullopt;
 }
 
 std::string rangeOf(const Knob& knob)
