@@ -60,7 +60,7 @@ TEST_F(ClosedForm, RectangleLightsAFloorByItsFormFactor)
         for (const gpu::vec2 at : {gpu::vec2{0, 0}, {0.45f, -0.2f}, {1.5f, 0.7f}})
             expectBoth(fmt::format("{} m below, ({}, {})", distance, at.x, at.y), *scene,
                        viewOf({at.x, 0, at.y}, {0.3f, 1, 0.2f}, 0.05f),
-                       grey(kAlbedo * kRadiance * rectangleFormFactor(at.x, at.y, distance)), {.side = 16, .sample_count = 64});
+                       grey(kAlbedo * kRadiance * rectangleFormFactor(at.x, at.y, distance)), {.side = 32, .sample_count = 128});
     }
 }
 
@@ -74,7 +74,7 @@ TEST_F(ClosedForm, DoubleSidedRectangleLightsBothItsSidesAlike)
     const auto scene = load(builder.compile());
     // Without light from wall to wall: that has no simple formula.
     const Rgb want = grey(kAlbedo * kRadiance * rectangleFormFactor(0, 0, 0.5));
-    const ClosedForm::Sampling sampling{.side = 16, .sample_count = 128, .depth = 2};
+    const ClosedForm::Sampling sampling{.side = 32, .sample_count = 128, .depth = 2};
     expectBoth("floor", *scene, viewOf({0, 0, 0}, {0.3f, 1, 0.2f}, 0.05f), want, sampling);
     expectBoth("ceiling", *scene, viewOf({0, 1, 0}, {0.3f, -1, 0.2f}, 0.05f), want, sampling);
 }
@@ -99,7 +99,7 @@ TEST_F(ClosedForm, FurnaceHasTheSameLightEverywhere)
         const auto scene = load(builder.compile());
         const Camera inside{.name = "", .position = {0.3f, 0.1f, 0.4f}, .forward = normalize({1, -0.2f, -1}), .up = {0, 1, 0}, .vertical_fov = 1.5f};
         const double all = 1 / (1 - albedo), first = 1 + albedo; // direct mode ends after one reflection
-        const ClosedForm::Sampling sampling{.side = 32, .sample_count = 64, .depth = 64};
+        const ClosedForm::Sampling sampling{.side = 32, .sample_count = 320, .depth = 64};
         expect(fmt::format("albedo {}", albedo), *scene, inside, Mode::kReference, {all, all / 2, all / 10}, sampling);
         expect(fmt::format("albedo {}", albedo), *scene, inside, Mode::kDirect, {first, first / 2, first / 10}, sampling);
     }

@@ -28,7 +28,7 @@ ImageF patternedMap()
 {
     constexpr uint32_t kWidth = 16, kHeight = 8;
     return makeMap(kWidth, kHeight, [](uint32_t x, uint32_t y) -> Rgb
-                   { return {1 + std::cos(kPi * (y + 0.5) / kHeight), y == 2 ? 20 : 0.1, x == 5 && y == 2 ? 50 : 0.2}; });
+                   { return {1 + std::cos(kPi * (y + 0.5) / kHeight), y == 2 ? 3 : 0.5, x == 5 && y == 2 ? 9 : 0.4}; });
 }
 
 /// Bilinear: u repeats, v clamps (format/gpu_scene.h).
@@ -100,7 +100,39 @@ TEST_F(ClosedForm, PatternedEnvironmentLightsEverySideByItsIntegral)
         for (double& channel : want)
             channel *= kAlbedo / kPi;
         expectBoth(fmt::format("side ({}, {}, {})", normal.x, normal.y, normal.z), *scene, viewOf(0.5f * normal, normal), want,
-                   {.side = 16, .sample_count = 256, .depth = 3});
+                   {.side = 32, .sample_count = 128, .depth = 3});
+    }
+}
+
+/// The directions at a bright texel's rim must have the density with which they are chosen: where map and direction
+/// disagree by a rounding error, a neighbour's density, a million times smaller, would be taken for it.
+TEST_F(ClosedForm, ASunOfOneTexelGivesAllItsLight)
+{
+    constexpr uint32_t kWidth = 1024, kHeight = 512;
+    for (const gpu::uvec2 sun : {gpu::uvec2{700, 0}, {700, 1}, {300, 100}, {0, 200}})
+    {
+        const ImageF map = makeMap(kWidth, kHeight, [&](uint32_t x, uint32_t y)
+                                   { return grey(x == sun.x && y == sun.y ? 1e6 : 0.01); });
+        SceneBuilder builder;
+        builder.floor(4, 0, builder.material(lambert(kAlbedo)));
+        builder.environment(map);
+        const auto scene = load(builder.compile());
+        // Midpoints of a finer grid than the texels, over the filtered sun; then the constant rest.
+        double sum = 0;
+        constexpr int kSteps = 256;
+        for (int i = 0; i < kSteps; ++i)
+            for (int k = 0; k < kSteps; ++k)
+            {
+                const double du = 2 * (i + 0.5) / kSteps - 1, dv = 2 * (k + 0.5) / kSteps - 1; // texels from its centre
+                const double v = (sun.y + 0.5 + dv) / kHeight, theta = v * kPi;
+                if (v <= 0)
+                    continue;
+                const double clamped = sun.y == 0 && dv < 0 ? 1 : 1 - std::abs(dv);
+                sum += (1e6 - 0.01) * clamped * (1 - std::abs(du)) * std::sin(theta) * std::cos(theta);
+            }
+        const double cell = 2.0 / kSteps * (kPi / kHeight) * 2.0 / kSteps * (2 * kPi / kWidth);
+        expectBoth(fmt::format("sun in texel ({}, {})", sun.x, sun.y), *scene, viewOf({0, 0, 0}, {0.3f, 1, 0.2f}),
+                   grey(kAlbedo / kPi * (sum * cell + 0.01 * kPi)), {.side = 64, .sample_count = 64, .depth = 3});
     }
 }
 
