@@ -44,8 +44,7 @@ void main()
         if (light.pdf > 0.0)
             carried *= misWeight(light.pdf, pdf);
         if (carried != vec3(0.0))
-            shadow_rays[atomicAdd(shadow_queue.count, 1u)] =
-                ShadowRay(leavingRay(s, light.wi, light.distance * kShadowShortening, path), carried);
+            shadow_rays[atomicAdd(shadow_queue.count, 1u)] = ShadowRay(shadowRay(s, light, path), carried);
     }
 
     vec2 u = nextPair(sampler_);

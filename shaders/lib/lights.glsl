@@ -10,11 +10,12 @@ struct LightSample
 {
     vec3 wi;        // unit, from the point to the light
     float distance; // metres
+    vec3 position;  // metres, on the light, moved off its surface; nowhere for directional and environment light
     vec3 weight;    // incident radiance / pdf (area, environment) or irradiance at normal incidence / pmf (punctual)
     float pdf;      // per steradian, selection included; 0 for punctual lights, which no other technique can find
 };
 
-const LightSample kNoLight = LightSample(vec3(0.0, 0.0, 1.0), 0.0, vec3(0.0), 0.0);
+const LightSample kNoLight = LightSample(vec3(0.0, 0.0, 1.0), 0.0, vec3(0.0), vec3(0.0), 0.0);
 
 vec2 directionToEnvironment(vec3 d)
 {
@@ -72,13 +73,13 @@ LightSample sampleEnvironment(float pmf, uvec2 pick, vec2 u)
     vec3 wi = environmentToDirection((vec2(i % size.x, i / size.x) + u) / vec2(size));
     // Not environmentPdf(wi): rounding would give some samples of a sun's texel the density of its dark neighbour.
     float pdf = environmentTexelPdf(i, wi);
-    return pdf > 0.0 ? LightSample(wi, kInfinity, environmentRadiance(wi) / pdf, pdf) : kNoLight;
+    return pdf > 0.0 ? LightSample(wi, kInfinity, vec3(0.0), environmentRadiance(wi) / pdf, pdf) : kNoLight;
 }
 
 LightSample samplePunctual(Light light, vec3 point)
 {
     if (light.kind == kLightDirectional)
-        return LightSample(-light.p1, kInfinity, light.emission / light.pmf, 0.0);
+        return LightSample(-light.p1, kInfinity, vec3(0.0), light.emission / light.pmf, 0.0);
     vec3 to_light = light.p0 - point;
     float distance2 = max(dot(to_light, to_light), 1e-12);
     float distance = sqrt(distance2);
@@ -86,7 +87,7 @@ LightSample samplePunctual(Light light, vec3 point)
     vec3 intensity = light.emission;
     if (light.kind == kLightSpot)
         intensity *= square(clamp(dot(light.p1, -wi) * light.p2.x + light.p2.y, 0.0, 1.0));
-    return LightSample(wi, distance, intensity / (distance2 * light.pmf), 0.0);
+    return LightSample(wi, distance, light.p0, intensity / (distance2 * light.pmf), 0.0);
 }
 
 LightSample sampleTriangle(Light light, uint index, vec3 point, vec2 u)
@@ -113,7 +114,8 @@ LightSample sampleTriangle(Light light, uint index, vec3 point, vec2 u)
         emission = surfaceEmission(light.material, uv0, uv1);
     }
     float pdf = trianglePdf(index, 0.5 * doubled, distance, cosine);
-    return LightSample(wi, distance, emission / pdf, pdf);
+    vec3 towards = twice_area * (dot(wi, twice_area) < 0.0 ? 1.0 / doubled : -1.0 / doubled);
+    return LightSample(wi, distance, offsetOrigin(position, towards), emission / pdf, pdf);
 }
 
 /// Picks a light by power and a point or direction on it. Uses three pairs of the sampler, whatever the light.

@@ -2,6 +2,7 @@
 #ifndef LIB_PATH_GLSL
 #define LIB_PATH_GLSL
 #include "shaders/lib/bsdf.glsl"
+#include "shaders/lib/lights.glsl"
 #include "shaders/lib/random.glsl"
 #include "shaders/lib/surface.glsl"
 #include "shaders/primary/primary.h"
@@ -42,7 +43,21 @@ Ray leavingRay(Surface s, vec3 wi, float t_max, uint path)
     return Ray(offsetOrigin(s.position, side), t_max, wi, path);
 }
 
-/// A shadow ray stops short of its light by this much of the distance, so that it does not meet the emitter itself.
+/// A shadow ray stops short of its light by this much of the distance: a punctual light may lie on a surface.
 const float kShadowShortening = 1.0 - 1e-4;
+
+/// The ray that decides whether s sees the light. It leaves one surface and stops short of the other by as much as
+/// rounding needs, measured from where it really starts: the distance from s itself would carry it into a near light.
+Ray shadowRay(Surface s, LightSample light, uint path)
+{
+    Ray ray = leavingRay(s, light.wi, kInfinity, path);
+    if (light.distance >= kInfinity)
+        return ray;
+    vec3 to_light = light.position - ray.origin;
+    float distance = length(to_light);
+    ray.t_max = distance * kShadowShortening;
+    ray.direction = to_light / max(distance, 1e-20);
+    return ray;
+}
 
 #endif

@@ -64,8 +64,7 @@ void sendShadowRay(Surface s, Bsdf b, mat3 frame, vec3 wo, PathState state, uint
         carried *= misWeight(light.pdf, pdf);
     if (carried == vec3(0.0))
         return;
-    Ray ray = leavingRay(s, light.wi, light.distance * kShadowShortening, path);
-    shadow_rays[atomicAdd(shadow_queue.count, 1u)] = ShadowRay(ray, carried);
+    shadow_rays[atomicAdd(shadow_queue.count, 1u)] = ShadowRay(shadowRay(s, light, path), carried);
 }
 
 void continuePath(Surface s, SurfaceMaterial m, Bsdf b, mat3 frame, vec3 wo, PathState state, uint path, inout Sampler sampler_)
