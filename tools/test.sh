@@ -4,8 +4,6 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-export LUMICUT_REQUIRE_DEVICE=1
-
 tools/setup.sh
 tools/build.sh release
 tools/build.sh asan fuzz_package fuzz_seeds
