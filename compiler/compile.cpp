@@ -206,7 +206,7 @@ Result<CompileReport> runPipeline(const CompileOptions& options)
     report.meta = makeMeta(options, scene, bvh, lights, textures, sky);
     auto chunks = writePackage(options, scene, bvh, lights, textures, sky, report.meta);
     if (!chunks)
-        return chunks.error();
+        return chunks.error().about(options.output.string());
     report.chunks = std::move(*chunks);
     watch.stage("write", options.output.filename().string());
     summarize(scene, report);

@@ -27,7 +27,7 @@ struct Arguments
 
 int fail(const std::string& where, const Error& error)
 {
-    fmt::print(stderr, "{}: error: {}\n", where, error.message);
+    fmt::print(stderr, "{}: error: {}\n", error.file.empty() ? where : error.file, error.message);
     return int(error.code);
 }
 

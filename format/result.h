@@ -20,6 +20,9 @@ struct Error
 {
     ExitCode code = ExitCode::kInvalid;
     std::string message;
+    std::string file = {}; // what the sentence is about where that is not the program's input; empty: the input
+
+    Error about(std::string path) const { return {code, message, std::move(path)}; }
 };
 
 template <typename T>

@@ -6,7 +6,7 @@ Status checkPicturePath(const std::filesystem::path& path)
 {
     if (path.extension() == ".exr" || path.extension() == ".png")
         return Success{};
-    return Error{ExitCode::kUsage, fmt::format("{}: pictures are written as .exr or .png", path.string())};
+    return Error{ExitCode::kUsage, "pictures are written as .exr or .png", path.string()};
 }
 
 namespace

@@ -10,7 +10,7 @@ namespace
 {
 int fail(const std::string& where, const Error& error)
 {
-    fmt::print(stderr, "{}: error: {}\n", where, error.message);
+    fmt::print(stderr, "{}: error: {}\n", error.file.empty() ? where : error.file, error.message);
     return int(error.code);
 }
 
@@ -41,12 +41,13 @@ Status parseSize(const std::string& text, PlayerOptions& options)
 Status checkOptions(const PlayerOptions& options)
 {
     if (!options.output.empty())
-    {
         if (const Status status = checkPicturePath(options.output); !status)
             return status;
-        const auto folder = options.output.has_parent_path() ? options.output.parent_path() : std::filesystem::path(".");
+    for (const std::filesystem::path& path : {options.output, options.stats})
+    {
+        const auto folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
         if (!std::filesystem::is_directory(folder))
-            return Error{ExitCode::kIo, fmt::format("{}: there is no folder {} to write to", options.output.string(), folder.string())};
+            return Error{ExitCode::kIo, fmt::format("there is no folder {} to write to", folder.string()), path.string()};
     }
     if (options.frame_count > 0 && options.sample_count > 0)
         return Error{ExitCode::kUsage, "--frames and --spp both say how much to render; give one"};

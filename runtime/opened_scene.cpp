@@ -41,8 +41,9 @@ Status writeResults(const PlayerOptions& options, const OpenedScene& opened, Ren
     fmt::print(stderr, "{}\n", statistics.summary());
     if (!options.output.empty())
         if (const Status status = capture(options.output, renderer, *opened.device, *opened.scene, options.settings); !status)
-            return status;
+            return status.error().about(options.output.string());
     if (!options.stats.empty())
-        return statistics.writeJson(options.stats);
+        if (const Status status = statistics.writeJson(options.stats); !status)
+            return status.error().about(options.stats.string());
     return Success{};
 }

@@ -11,8 +11,9 @@ struct PathState
     float pdf;       // per steradian, with which the current direction was chosen; 0: delta or camera
     float travelled; // metres since the last scattering vertex (thin walls in between do not scatter)
     uint medium;     // material index of the absorbing medium the path is in, or kNone
+    uint from_eye;   // 1: nothing but mirrors and glass since the camera
 };
-GPU_SIZE(PathState, 24);
+GPU_SIZE(PathState, 28);
 
 struct ShadeParams
 {

@@ -27,7 +27,7 @@ const uint kRouletteDepth = 3u; // vertices that are always continued
 PathState loadState(uint path)
 {
     if (params.depth == 0u)
-        return PathState(vec3(1.0), 0.0, 0.0, kNone);
+        return PathState(vec3(1.0), 0.0, 0.0, kNone, 1u);
     return states[path];
 }
 
@@ -86,6 +86,7 @@ void continuePath(Surface s, SurfaceMaterial m, Bsdf b, mat3 frame, vec3 wo, Pat
     if (!next.passed)
     {
         state.pdf = next.pdf;
+        state.from_eye &= uint(next.pdf == 0.0);
         state.travelled = 0.0;
         if (next.wi.z < 0.0)
             state.medium = s.front && enclosesMedium(s, m) ? s.material : kNone;
@@ -116,7 +117,7 @@ void main()
     state.travelled += hit.t;
     if ((m.flags & kMaterialUnlit) != 0u) // a picture of itself for the eye, black for everything else
     {
-        add(path, state.pdf == 0.0 ? state.throughput * m.base_color : vec3(0.0));
+        add(path, state.from_eye == 1u ? state.throughput * m.base_color : vec3(0.0));
         return;
     }
     add(path, state.throughput * emittedLight(s, m, direction, state));
