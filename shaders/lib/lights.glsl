@@ -18,7 +18,8 @@ const LightSample kNoLight = LightSample(vec3(0.0, 0.0, 1.0), 0.0, vec3(0.0), 0.
 
 vec2 directionToEnvironment(vec3 d)
 {
-    return vec2(0.5 + atan(d.z, d.x) * (0.5 * kInvPi), acos(clamp(d.y, -1.0, 1.0)) * kInvPi);
+    // Drivers' acos is good to 1e-4 only, a tenth of a texel in a large map; their atan to a few ulps.
+    return vec2(0.5 + atan(d.z, d.x) * (0.5 * kInvPi), atan(length(d.xz), d.y) * kInvPi);
 }
 
 vec3 environmentToDirection(vec2 uv)
@@ -38,16 +39,22 @@ vec3 environmentRadiance(vec3 d)
     return lights[scene.environment_light].emission * textureLod(environment_map, uv, 0.0).rgb;
 }
 
+/// Solid-angle density with which sampleLight() finds direction d within importance texel `index`, selection included.
+float environmentTexelPdf(uint index, vec3 d)
+{
+    float texel_count = float(scene.environment_importance_size.x * scene.environment_importance_size.y);
+    float probability = environment_texels[index].probability;
+    return lights[scene.environment_light].pmf * probability * texel_count / (2.0 * kPi * kPi * max(1e-6, length(d.xz)));
+}
+
 /// Solid-angle density with which sampleLight() finds direction d, selection included.
 float environmentPdf(vec3 d)
 {
     if (!hasFeature(kFeatureEnvironment))
         return 0.0;
-    vec2 size = vec2(scene.environment_importance_size);
-    uvec2 texel = min(uvec2(directionToEnvironment(d) * size), scene.environment_importance_size - 1u);
-    float sin_theta = sqrt(max(1e-12, 1.0 - d.y * d.y));
-    float probability = environment_texels[texel.y * scene.environment_importance_size.x + texel.x].probability;
-    return lights[scene.environment_light].pmf * probability * size.x * size.y / (2.0 * kPi * kPi * sin_theta);
+    uvec2 size = scene.environment_importance_size;
+    uvec2 texel = min(uvec2(directionToEnvironment(d) * vec2(size)), size - 1u);
+    return environmentTexelPdf(texel.y * size.x + texel.x, d);
 }
 
 /// The same for a point on an emissive triangle seen at `distance` under `cosine`.
@@ -63,7 +70,8 @@ LightSample sampleEnvironment(float pmf, uvec2 pick, vec2 u)
     if (toUnitFloat(pick.y) >= environment_texels[i].threshold)
         i = environment_texels[i].alias;
     vec3 wi = environmentToDirection((vec2(i % size.x, i / size.x) + u) / vec2(size));
-    float pdf = environmentPdf(wi);
+    // Not environmentPdf(wi): rounding would give some samples of a sun's texel the density of its dark neighbour.
+    float pdf = environmentTexelPdf(i, wi);
     return pdf > 0.0 ? LightSample(wi, kInfinity, environmentRadiance(wi) / pdf, pdf) : kNoLight;
 }
 

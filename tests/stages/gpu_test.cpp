@@ -1,0 +1,84 @@
+#include "tests/stages/gpu_test.h"
+
+#include <algorithm>
+#include <cstdlib>
+
+namespace
+{
+constexpr uint32_t kFramesPerSubmission = 32;
+
+const Result<std::unique_ptr<Device>>& openedDevice()
+{
+    // Never closed: scenes and renderers of any test borrow it, and the end of the process frees everything.
+    static const auto* const opened = new Result<std::unique_ptr<Device>>(
+        []() -> Result<std::unique_ptr<Device>>
+        {
+            ::setenv("XDG_CACHE_HOME", LUMICUT_TEST_CACHE, 1); // pipelines are built once for all tests
+            const auto instance = Instance::create({.validation = true});
+            if (!instance)
+                return instance.error();
+            const auto index = selectDevice(instance->devices(), "");
+            if (!index)
+                return index.error();
+            return Device::create(*instance, *index, false);
+        }());
+    return *opened;
+}
+} // namespace
+
+void GpuTest::SetUpTestSuite()
+{
+    if (const auto& opened = openedDevice())
+        RecordProperty("device", (*opened)->name());
+}
+
+void GpuTest::SetUp()
+{
+    ASSERT_TRUE(openedDevice()) << openedDevice().error().message;
+}
+
+const Device& GpuTest::device() { return **openedDevice(); }
+
+std::unique_ptr<SceneGpu> GpuTest::load(const std::filesystem::path& path)
+{
+    kept_.clear(); // the new scene may come to lie where a former one lay
+    const auto package = package::Package::open(path);
+    check(bool(package), "{}: {}", path.string(), package ? "" : package.error().message);
+    auto scene = SceneGpu::create(device(), *package);
+    check(bool(scene), "{}: {}", path.string(), scene ? "" : scene.error().message);
+    return std::move(*scene);
+}
+
+Renderer& GpuTest::rendererFor(const SceneGpu& scene, Mode mode, uint32_t width, uint32_t height)
+{
+    for (const auto& kept : kept_)
+        if (kept->scene == &scene && kept->mode == mode && kept->renderer.width() == width && kept->renderer.height() == height)
+        {
+            kept->renderer.restart();
+            return kept->renderer;
+        }
+    kept_.push_back(std::make_unique<Kept>(&scene, mode, Renderer(device(), scene, mode, width, height)));
+    return kept_.back()->renderer;
+}
+
+Picture GpuTest::render(const SceneGpu& scene, const Camera& camera, const Settings& settings, uint32_t sample_count,
+                        uint32_t width, uint32_t height, Mode mode, uint32_t seed)
+{
+    Renderer& renderer = rendererFor(scene, mode, width, height);
+    Recorder rec(device());
+    uint32_t left = sample_count;
+    while (left > 0)
+    {
+        rec.begin(scene.descriptorSet());
+        for (uint32_t frame = 0; frame < kFramesPerSubmission && left > 0; ++frame)
+        {
+            const uint32_t count = std::min(left, renderer.maxBatch());
+            renderer.record(rec, camera, settings, seed, count);
+            left -= count;
+        }
+        rec.submitAndWait();
+    }
+    EXPECT_EQ(renderer.sampleCount(), sample_count);
+    EXPECT_EQ(renderer.nonFiniteCount(device()), 0u);
+    return {.width = width, .height = height, .pixels = renderer.picture(device())};
+}
