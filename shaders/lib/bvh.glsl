@@ -50,22 +50,39 @@ vec4 hitBoxes(uint node, BoxRay ray, float t_max)
 
 uvec4 nodeChildren(uint node) { return texelFetch(bvh_nodes, int(node * kBvhNodeRows + 6u)); }
 
-/// Watertight along shared edges: the edge functions of two neighbours are exact negatives of each other
-/// (Davidovic et al. 2012, "3D Rasterization", in the sum-and-difference form, which FMA contraction cannot break).
-/// @return whether it is met between t_min (exclusive) and hit.t, which then is it
-bool hitTriangle(uint slot, vec3 origin, vec3 direction, float t_min, inout Hit hit)
+/// What the triangle test needs of a ray: it looks at triangles along the ray, projected to the plane across it.
+struct TriangleRay
 {
-    vec3 a = loadBvhTriangle(slot).v0 - origin;
-    vec3 b = loadBvhTriangle(slot).v1 - origin;
-    vec3 c = loadBvhTriangle(slot).v2 - origin;
-    vec3 e0 = c - a, e1 = a - b, e2 = b - c;
-    float u = dot(cross(c + a, e0), direction); // weight of v1
-    float v = dot(cross(a + b, e1), direction); // weight of v2
-    float w = dot(cross(b + c, e2), direction); // weight of v0
+    vec3 origin, direction;
+    vec3 x, y; // with direction a frame
+};
+
+TriangleRay triangleRay(vec3 origin, vec3 direction)
+{
+    mat3 frame = frameAround(direction);
+    return TriangleRay(origin, direction, frame[0], frame[1]);
+}
+
+/// Watertight along shared edges and at shared corners (Woop et al. 2013, "Watertight Ray/Triangle Intersection"): a
+/// corner has one projection for all its triangles, and the sign of an edge function is that of the exact difference, or
+/// 0, which counts as inside. Contraction to fused multiply-adds would break that, hence `precise`.
+/// @return whether it is met between t_min (exclusive) and hit.t, which then is it
+bool hitTriangle(uint slot, TriangleRay ray, float t_min, inout Hit hit)
+{
+    vec3 a = loadBvhTriangle(slot).v0 - ray.origin;
+    vec3 b = loadBvhTriangle(slot).v1 - ray.origin;
+    vec3 c = loadBvhTriangle(slot).v2 - ray.origin;
+    precise vec3 x = vec3(fma(ray.x.x, a.x, fma(ray.x.y, a.y, ray.x.z * a.z)), fma(ray.x.x, b.x, fma(ray.x.y, b.y, ray.x.z * b.z)),
+                          fma(ray.x.x, c.x, fma(ray.x.y, c.y, ray.x.z * c.z)));
+    precise vec3 y = vec3(fma(ray.y.x, a.x, fma(ray.y.y, a.y, ray.y.z * a.z)), fma(ray.y.x, b.x, fma(ray.y.y, b.y, ray.y.z * b.z)),
+                          fma(ray.y.x, c.x, fma(ray.y.y, c.y, ray.y.z * c.z)));
+    precise float u = x.x * y.z - x.z * y.x; // weight of v1
+    precise float v = x.y * y.x - x.x * y.y; // weight of v2
+    precise float w = x.z * y.y - x.y * y.z; // weight of v0
     if (min(u, min(v, w)) < 0.0 && max(u, max(v, w)) > 0.0)
         return false;
-    vec3 normal = cross(e1, e0);
-    float along = dot(normal, direction);
+    vec3 normal = cross(a - b, c - a);
+    float along = dot(normal, ray.direction);
     float t = dot(normal, a) / along;
     if (!(t > t_min && t < hit.t)) // also refuses NaN: a ray in the triangle's plane
         return false;
@@ -113,6 +130,7 @@ Hit nearestTriangle(vec3 origin, vec3 direction, float t_min, float t_max)
     uint current = 0u;
     Hit hit = Hit(t_max, kNone, vec2(0.0));
     BoxRay ray = boxRay(origin, direction);
+    TriangleRay triangle_ray = triangleRay(origin, direction);
     while (true)
     {
         // Down to a leaf; then its triangles: two loops, so that neighbouring rays do the same kind of work together
@@ -137,7 +155,7 @@ Hit nearestTriangle(vec3 origin, vec3 direction, float t_min, float t_max)
         if (current == kNone)
             return hit;
         for (uint slot = current & kLeafFirstMask; slot < leafEnd(current); ++slot)
-            hitTriangle(slot, origin, direction, t_min, hit);
+            hitTriangle(slot, triangle_ray, t_min, hit);
         current = popNearer(hit.t);
     }
 }
@@ -149,6 +167,7 @@ bool anyOpaqueTriangle(vec3 origin, vec3 direction, float t_max, out bool met_tr
     traversal_depth = 0u;
     uint current = 0u;
     BoxRay ray = boxRay(origin, direction);
+    TriangleRay triangle_ray = triangleRay(origin, direction);
     met_translucent = false;
     while (true)
     {
@@ -171,7 +190,7 @@ bool anyOpaqueTriangle(vec3 origin, vec3 direction, float t_max, out bool met_tr
         for (uint slot = current & kLeafFirstMask; slot < leafEnd(current); ++slot)
         {
             Hit hit = Hit(t_max, kNone, vec2(0.0));
-            if (!hitTriangle(slot, origin, direction, 0.0, hit))
+            if (!hitTriangle(slot, triangle_ray, 0.0, hit))
                 continue;
             if (!kSceneHasTranslucency || loadBvhTriangle(slot).flags == 0u)
                 return true;
