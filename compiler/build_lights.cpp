@@ -86,6 +86,12 @@ Candidate emissiveTriangle(const SceneData& scene, uint32_t triangle)
         const gpu::vec3 texture = averageEmissiveTexture(scene, triangle);
         mean = {mean.x * texture.x, mean.y * texture.y, mean.z * texture.z};
     }
+    const bool masked = (material.flags & gpu::kMaterialAlphaMask) != 0;
+    const bool blended = (material.flags & gpu::kMaterialAlphaBlend) != 0;
+    if (blended)
+        mean = mean * material.alpha; // textures may take more away
+    if (masked && material.alpha < material.alpha_cutoff)
+        mean = {}; // nothing is there
     const double area = double(length(cross(p1 - p0, p2 - p0))) / 2;
     return {.light = {.p0 = p0,
                       .kind = two_sided ? gpu::kLightTriangleTwoSided : gpu::kLightTriangle,
@@ -94,7 +100,7 @@ Candidate emissiveTriangle(const SceneData& scene, uint32_t triangle)
                       .p2 = p2,
                       .pmf = 0,
                       .emission = material.emission,
-                      .material = textured ? material_index : gpu::kNone},
+                      .material = textured || masked || blended ? material_index : gpu::kNone},
             .power = kPi * area * luminance(mean) * (two_sided ? 2 : 1)};
 }
 

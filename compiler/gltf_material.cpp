@@ -355,7 +355,7 @@ std::vector<uint32_t> materialTriangleFlags(const SceneData& scene)
     {
         uint32_t f = 0;
         if ((m.flags & kAlpha) != 0)
-            if (m.alpha < 1 || (m.base_color_texture != gpu::kNone &&
+            if (m.alpha < 1 || ((m.flags & gpu::kMaterialAlphaMask) != 0 && m.alpha_cutoff > 1) || (m.base_color_texture != gpu::kNone &&
                                 hasTransparentTexel(scene.images[scene.texture_uses[m.base_color_texture].image])))
                 f |= gpu::kTriangleAlpha;
         if ((m.flags & gpu::kMaterialThin) != 0 && m.transmission > 0 && m.roughness < kSmooth &&

@@ -147,8 +147,8 @@ struct Light
     uint triangle; // triangle: index into Triangles, else kNone
     vec3 p2;       // spot: (cone_scale, cone_offset, 0), see below. triangle: vertex 2
     float pmf;     // probability of being picked by the alias table; power / total power
-    vec3 emission; // point, spot: W/sr. directional: W/m^2. triangle: W/(m^2 sr) before texture. environment: factor
-    uint material; // triangle with an emissive texture: its material, else kNone
+    vec3 emission; // point, spot: W/sr. directional: W/m^2. triangle: W/(m^2 sr) before texture and alpha. environment: factor
+    uint material; // triangle whose emission varies, by an emissive texture or alpha: its material, else kNone
 };
 GPU_SIZE(Light, 64);
 GPU_OFFSET(Light, p1, 16);

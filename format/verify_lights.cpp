@@ -49,8 +49,10 @@ Status verifyTriangleLight(const Contents& contents, const gpu::Light& light, si
     if (light.material >= contents.materials.size())
         return invalid("chunk LITE: light {} refers to material {}, chunk MATL has {}", index, light.material,
                        contents.materials.size());
-    if (contents.materials[light.material].emissive_texture == gpu::kNone)
-        return invalid("chunk LITE: light {} names material {}, which has no emissive texture", index, light.material);
+    const gpu::Material& material = contents.materials[light.material];
+    if (material.emissive_texture == gpu::kNone && (material.flags & (gpu::kMaterialAlphaMask | gpu::kMaterialAlphaBlend)) == 0)
+        return invalid("chunk LITE: light {} names material {}, which has neither an emissive texture nor alpha", index,
+                       light.material);
     return Success{};
 }
 

@@ -22,7 +22,7 @@ void DirectStage::record(Recorder& rec, const RayStage& rays, const Input& in) c
                                        .seed = in.seed,
                                        .light_sample = i,
                                        .light_sample_count = in.light_sample_count};
-        const uint32_t sample = in.first_sample * in.light_sample_count + i;
+        const gpu::RaysParams trace{traceSeed(in.seed, in.first_sample * in.light_sample_count + i, ~0u)};
         rays.reset(rec, shadow_size_);
         rays.reset(rec, emitter_queue_.size);
         rec.run(sample_, in.point_count, params,
@@ -33,8 +33,8 @@ void DirectStage::record(Recorder& rec, const RayStage& rays, const Input& in) c
         if (!has_area_lights_)
             continue;
         rays.close(rec, emitter_queue_.size);
-        rays.closest(rec, emitter_queue_, hits_, traceSeed(in.seed, sample, ~0u));
-        rec.runIndirect(emitted_, emitter_queue_.size, 0, NoParams{},
+        rays.closest(rec, emitter_queue_, hits_, trace.seed);
+        rec.runIndirect(emitted_, emitter_queue_.size, 0, trace,
                         {{"EmitterQueue", emitter_queue_.size}, {"Rays", emitter_queue_.rays}, {"Hits", hits_},
                          {"EmitterRays", emitter_rays_}, {"Radiance", in.radiance}});
     }

@@ -3,12 +3,14 @@
 #extension GL_EXT_scalar_block_layout : require
 #include "shaders/direct/direct.h"
 #include "shaders/lib/lights.glsl"
-#include "shaders/lib/surface.glsl"
+#include "shaders/lib/trace.glsl"
 
-// Adds what BSDF-sampled rays find when they end on an emitter or in the sky. One thread per ray of the queue; at most
-// one ray a point, so the sum does not depend on thread order.
+// Adds what BSDF-sampled rays find when they end on an emitter or in the sky, thin walls in between included, since
+// shadow rays go through them too. One thread per ray of the queue; at most one ray a point, so the sum does not depend on
+// thread order.
 
 layout(local_size_x = kRaysGroupSize) in;
+layout(push_constant, scalar) uniform Params { RaysParams params; };
 
 layout(set = 1, binding = 0, scalar) readonly buffer EmitterQueue { QueueSize emitter_queue; };
 layout(set = 1, binding = 1, scalar) readonly buffer Rays { Ray rays[]; };
@@ -16,28 +18,41 @@ layout(set = 1, binding = 2, scalar) readonly buffer Hits { Hit hits[]; };
 layout(set = 1, binding = 3, scalar) readonly buffer EmitterRays { EmitterRay emitter_rays[]; };
 layout(set = 1, binding = 4, scalar) buffer Radiance { vec3 radiance[]; };
 
+/// What the ray meets there, weighted against the shadow rays that could have found it too.
+vec3 emittedLight(Hit hit, vec3 direction, float pdf)
+{
+    if (hit.slot == kNone)
+    {
+        vec3 light = environmentRadiance(direction);
+        return light == vec3(0.0) ? light : light * misWeight(pdf, environmentPdf(direction));
+    }
+    uint light = loadTriangle(loadBvhTriangle(hit.slot).triangle).light;
+    if (light == kNone)
+        return vec3(0.0);
+    Surface s = surfaceAt(hit.slot, hit.barycentrics, direction);
+    if (!emits(s))
+        return vec3(0.0);
+    float light_pdf = trianglePdf(light, s.area, hit.t, abs(dot(s.geometric_normal, direction)));
+    return surfaceEmission(s.material, s.uv0, s.uv1) * misWeight(pdf, light_pdf);
+}
+
 void main()
 {
     uint i = gl_GlobalInvocationID.x;
     if (i >= emitter_queue.count)
         return;
-    vec3 direction = rays[i].direction;
-    uint path = rays[i].path;
-    EmitterRay ray = emitter_rays[i];
+    Ray ray = rays[i];
     Hit hit = hits[i];
-    if (hit.slot == kNone)
+    vec3 through = vec3(1.0);
+    vec3 light = emittedLight(hit, ray.direction, emitter_rays[i].pdf);
+    for (uint layer = 1u; kSceneHasThin && hit.slot != kNone && layer <= kMaxLayers; ++layer)
     {
-        vec3 light = environmentRadiance(direction);
-        if (light != vec3(0.0))
-            radiance[path] += ray.throughput * light * misWeight(ray.pdf, environmentPdf(direction));
-        return;
+        through *= thinTransmittance(hit, ray.direction);
+        if (through == vec3(0.0))
+            break;
+        hit = closestHit(ray.origin, ray.direction, hit.t, kInfinity, hash(params.seed + layer, ray.path));
+        light += through * emittedLight(hit, ray.direction, emitter_rays[i].pdf);
     }
-    uint light = loadTriangle(loadBvhTriangle(hit.slot).triangle).light;
-    if (light == kNone)
-        return;
-    Surface s = surfaceAt(hit.slot, hit.barycentrics, direction);
-    if (!emits(s))
-        return;
-    float pdf = trianglePdf(light, s.area, hit.t, abs(dot(s.geometric_normal, direction)));
-    radiance[path] += ray.throughput * surfaceEmission(s.material, s.uv0, s.uv1) * misWeight(ray.pdf, pdf);
+    if (light != vec3(0.0))
+        radiance[ray.path] += emitter_rays[i].throughput * light;
 }

@@ -4,13 +4,11 @@
 #include "shaders/lib/scene.glsl"
 #include "shaders/lib/textures.glsl"
 
-/// Fraction of light that the surface stops: 1 opaque, mask 0 or 1, blend its alpha (glTF 2.0, 3.9.4).
-float surfaceCoverage(uint slot, vec2 barycentrics)
+/// Fraction of light that a surface stops: 1 opaque, mask 0 or 1, blend its alpha (glTF 2.0, 3.9.4).
+/// @param v vertices of the triangle, @param weights theirs at the point
+float surfaceCoverage(uint material, uvec3 v, vec3 weights)
 {
-    uint material = loadBvhTriangle(slot).material;
     uint flags = loadMaterial(material).flags;
-    uvec3 v = loadTriangle(loadBvhTriangle(slot).triangle).vertices;
-    vec3 weights = vec3(1.0 - barycentrics.x - barycentrics.y, barycentrics);
     float alpha = loadMaterial(material).alpha;
     alpha *= dot(weights, vec3(unpackHalf2x16(loadVertex(v.x).color.y).y, unpackHalf2x16(loadVertex(v.y).color.y).y,
                                unpackHalf2x16(loadVertex(v.z).color.y).y));
@@ -24,6 +22,12 @@ float surfaceCoverage(uint slot, vec2 barycentrics)
     if ((flags & kMaterialAlphaMask) != 0u)
         return alpha >= loadMaterial(material).alpha_cutoff ? 1.0 : 0.0;
     return (flags & kMaterialAlphaBlend) != 0u ? clamp(alpha, 0.0, 1.0) : 1.0;
+}
+
+float surfaceCoverage(uint slot, vec2 barycentrics)
+{
+    vec3 weights = vec3(1.0 - barycentrics.x - barycentrics.y, barycentrics);
+    return surfaceCoverage(loadBvhTriangle(slot).material, loadTriangle(loadBvhTriangle(slot).triangle).vertices, weights);
 }
 
 #endif

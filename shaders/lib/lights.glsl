@@ -1,6 +1,7 @@
 // Choosing and evaluating lights: punctual, emissive triangles, environment. Functions only.
 #ifndef LIB_LIGHTS_GLSL
 #define LIB_LIGHTS_GLSL
+#include "shaders/lib/coverage.glsl"
 #include "shaders/lib/math.glsl"
 #include "shaders/lib/random.glsl"
 #include "shaders/lib/scene.glsl"
@@ -106,12 +107,14 @@ LightSample sampleTriangle(Light light, uint index, vec3 point, vec2 u)
     if (cosine <= 0.0)
         return kNoLight;
     vec3 emission = light.emission;
-    if (hasFeature(kFeatureEmissiveMaps) && light.material != kNone)
+    if ((hasFeature(kFeatureEmissiveMaps) || kSceneHasAlpha) && light.material != kNone)
     {
         uvec3 v = loadTriangle(light.triangle).vertices;
         vec2 uv0 = interpolate(weights, loadVertex(v.x).uv0, loadVertex(v.y).uv0, loadVertex(v.z).uv0);
         vec2 uv1 = interpolate(weights, loadVertex(v.x).uv1, loadVertex(v.y).uv1, loadVertex(v.z).uv1);
         emission = surfaceEmission(light.material, uv0, uv1);
+        if (kSceneHasAlpha)
+            emission *= surfaceCoverage(light.material, v, weights);
     }
     float pdf = trianglePdf(index, 0.5 * doubled, distance, cosine);
     vec3 towards = twice_area * (dot(wi, twice_area) < 0.0 ? 1.0 / doubled : -1.0 / doubled);

@@ -9,11 +9,12 @@
 
 const uint kMaxLayers = 64u; // translucent surfaces along one ray; the next one counts as opaque
 
-/// The nearest surface within t_max; one with alpha is there with the probability of its coverage, decided by `seed`.
-Hit closestHit(vec3 origin, vec3 direction, float t_max, uint seed)
+/// The nearest surface between t_min (exclusive) and t_max; one with alpha is there with the probability of its coverage,
+/// decided by `seed`.
+Hit closestHit(vec3 origin, vec3 direction, float t_min, float t_max, uint seed)
 {
     Hit hit;
-    float t = 0.0;
+    float t = t_min;
     for (uint layer = 0u; layer < kMaxLayers; ++layer)
     {
         hit = nearestTriangle(origin, direction, t, t_max);
@@ -26,19 +27,22 @@ Hit closestHit(vec3 origin, vec3 direction, float t_max, uint seed)
     return hit;
 }
 
+/// What a thin wall lets straight through where it is; 0 for any other surface.
+vec3 thinTransmittance(Hit hit, vec3 direction)
+{
+    if (!kSceneHasThin || (loadBvhTriangle(hit.slot).flags & kTriangleThin) == 0u)
+        return vec3(0.0);
+    Surface s = surfaceAt(hit.slot, hit.barycentrics, direction);
+    Bsdf b = bsdfAt(materialAt(s), s.front);
+    return belowColor(b, -dot(s.normal, direction)) * b.transmission;
+}
+
 /// What a translucent surface lets straight through: what it does not cover, and thin smooth transmission of the rest.
 vec3 layerTransmittance(Hit hit, vec3 direction)
 {
-    uint flags = loadBvhTriangle(hit.slot).flags;
-    float coverage = (flags & kTriangleAlpha) != 0u ? surfaceCoverage(hit.slot, hit.barycentrics) : 1.0;
-    vec3 thin = vec3(0.0);
-    if (kSceneHasThin && (flags & kTriangleThin) != 0u)
-    {
-        Surface s = surfaceAt(hit.slot, hit.barycentrics, direction);
-        Bsdf b = bsdfAt(materialAt(s), s.front);
-        thin = belowColor(b, -dot(s.normal, direction)) * b.transmission;
-    }
-    return 1.0 - coverage * (1.0 - thin);
+    bool alpha = (loadBvhTriangle(hit.slot).flags & kTriangleAlpha) != 0u;
+    float coverage = alpha ? surfaceCoverage(hit.slot, hit.barycentrics) : 1.0;
+    return 1.0 - coverage * (1.0 - thinTransmittance(hit, direction));
 }
 
 /// Fraction of light that gets from origin to origin + t_max direction.

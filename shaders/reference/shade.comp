@@ -76,9 +76,13 @@ void continuePath(Surface s, SurfaceMaterial m, Bsdf b, mat3 frame, vec3 wo, Pat
     if (next.weight == vec3(0.0) || !sidesAgree(s, wi, next.wi.z))
         return;
     state.throughput *= next.weight;
+    if (next.wi.z < 0.0 && !next.passed)
+        state.medium = s.front && enclosesMedium(s, m) ? s.material : kNone;
     if (params.depth >= kRouletteDepth)
     {
-        float survival = clamp(maxComponent(state.throughput), 0.05, 0.95);
+        // Radiance in a denser medium is smaller for as long as the path stays in it only: that is no reason to end it.
+        float squeezed = state.medium == kNone ? 1.0 : square(loadMaterial(state.medium).ior);
+        float survival = clamp(maxComponent(state.throughput) * squeezed, 0.05, 0.95);
         if (choice.y >= survival)
             return;
         state.throughput /= survival;
@@ -88,8 +92,6 @@ void continuePath(Surface s, SurfaceMaterial m, Bsdf b, mat3 frame, vec3 wo, Pat
         state.pdf = next.pdf;
         state.from_eye &= uint(next.pdf == 0.0);
         state.travelled = 0.0;
-        if (next.wi.z < 0.0)
-            state.medium = s.front && enclosesMedium(s, m) ? s.material : kNone;
     }
     states[path] = state;
     next_rays[atomicAdd(next_queue.count, 1u)] = leavingRay(s, wi, kInfinity, path);

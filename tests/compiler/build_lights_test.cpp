@@ -151,6 +151,26 @@ TEST(BuildLights, EmissiveTexturesAreAveragedOverTheTriangle)
     EXPECT_TRUE(buildLights(scene).lights.empty());
 }
 
+TEST(BuildLights, AlphaTakesItsShareOfTheEmission)
+{
+    gpu::Material lamp = material();
+    lamp.emission = {8, 8, 8};
+    lamp.alpha = 0.25f;
+    const double opaque = powerOf(withEmitter(lamp));
+    lamp.flags = gpu::kMaterialAlphaBlend;
+    const LightTables tables = buildLights(withEmitter(lamp));
+    EXPECT_NEAR(tables.total_power, 0.25 * opaque, 1e-6 * opaque);
+    ASSERT_EQ(tables.lights.size(), 1u);
+    EXPECT_EQ(tables.lights[0].material, 1u); // shaders look up the coverage there
+    EXPECT_EQ(tables.lights[0].emission.x, 8);
+
+    lamp.flags = gpu::kMaterialAlphaMask;
+    lamp.alpha_cutoff = 0.2f;
+    EXPECT_NEAR(powerOf(withEmitter(lamp)), opaque, 1e-6 * opaque);
+    lamp.alpha_cutoff = 0.5f;
+    EXPECT_TRUE(buildLights(withEmitter(lamp)).lights.empty());
+}
+
 TEST(BuildLights, EnvironmentIsTheLastLight)
 {
     SceneData scene = withPunctual({.kind = gpu::kLightPoint, .intensity = {1, 1, 1}});
