@@ -22,10 +22,11 @@ protected:
     static std::vector<gpu::Ray> generate(const gpu::CameraParams& params)
     {
         const uint32_t count = params.width * params.height * params.sample_count;
+        const Kernel kernel = device().kernel("primary/generate");
         const Buffer rays = device().array<gpu::Ray>("test.rays", count);
         Recorder rec(device());
         rec.begin(VK_NULL_HANDLE);
-        rec.run(device().kernel("primary/generate"), count, params, {{"Rays", rays}});
+        rec.run(kernel, count, params, {{"Rays", rays}});
         rec.submitAndWait();
         return device().download<gpu::Ray>(rays, count);
     }
