@@ -13,18 +13,45 @@ struct Vec
 {
     double x, y, z;
 };
-Vec operator+(Vec a, Vec b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-Vec operator-(Vec a, Vec b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-Vec operator*(double s, Vec a) { return {s * a.x, s * a.y, s * a.z}; }
-double dot(Vec a, Vec b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-Vec crossed(Vec a, Vec b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
-Vec unit(Vec a) { return 1 / std::sqrt(dot(a, a)) * a; }
-Vec exact(gpu::vec3 v) { return {v.x, v.y, v.z}; }
-gpu::vec3 rounded(Vec v) { return {float(v.x), float(v.y), float(v.z)}; }
+Vec operator+(Vec a, Vec b)
+{
+    return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+Vec operator-(Vec a, Vec b)
+{
+    return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+Vec operator*(double s, Vec a)
+{
+    return {s * a.x, s * a.y, s * a.z};
+}
+double dot(Vec a, Vec b)
+{
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+Vec crossed(Vec a, Vec b)
+{
+    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+Vec unit(Vec a)
+{
+    return 1 / std::sqrt(dot(a, a)) * a;
+}
+Vec exact(gpu::vec3 v)
+{
+    return {v.x, v.y, v.z};
+}
+gpu::vec3 rounded(Vec v)
+{
+    return {float(v.x), float(v.y), float(v.z)};
+}
 
 constexpr double kPi = std::numbers::pi;
 constexpr double kF0 = 0.04; // index 1.5
-double rise(double v_h) { return std::pow(1 - std::clamp(v_h, 0.0, 1.0), 5); }
+double rise(double v_h)
+{
+    return std::pow(1 - std::clamp(v_h, 0.0, 1.0), 5);
+}
 
 /// glTF 2.0, appendix B: D G / (4 N.L N.V), separable Smith masking.
 double ggxLobe(double n_l, double n_v, double n_h, double alpha)
@@ -62,8 +89,8 @@ DirectLightByBothModels::DirectLightByBothModels(const package::Package& package
 {
     const gpu::Material& first = package.materials()[0];
     for (const gpu::Material& m : package.materials())
-        check(m.roughness == first.roughness && m.metallic == 0 && m.metallic_roughness_texture == gpu::kNone && m.ior == 1.5f &&
-                  m.specular == 1 && m.normal_texture == gpu::kNone,
+        check(m.roughness == first.roughness && m.metallic == 0 && m.metallic_roughness_texture == gpu::kNone &&
+                  m.ior == 1.5f && m.specular == 1 && m.normal_texture == gpu::kNone,
               "this comparison is for plain dielectrics of one roughness");
     alpha_ = double(first.roughness) * first.roughness;
     for (int i = 0; i <= kTableSize; ++i)
@@ -99,7 +126,8 @@ std::array<double, 3> DirectLightByBothModels::baseColor(const gpu::Material& ma
     const int x0 = int(std::floor(x)), y0 = int(std::floor(y));
     const auto linear = [&](int column, int row, size_t channel)
     {
-        const size_t texel = (size_t(ref.layer) * height + size_t((row % height + height) % height)) * width + size_t((column % width + width) % width);
+        const size_t texel = (size_t(ref.layer) * height + size_t((row % height + height) % height)) * width +
+                             size_t((column % width + width) % width);
         const double c = double(uint8_t(texels[4 * texel + channel])) / 255;
         return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
     };
@@ -112,7 +140,8 @@ std::array<double, 3> DirectLightByBothModels::baseColor(const gpu::Material& ma
     return color;
 }
 
-std::optional<DirectLight> DirectLightByBothModels::operator()(const gpu::Ray& ray, const gpu::Hit& hit, const gpu::Light& light) const
+std::optional<DirectLight> DirectLightByBothModels::operator()(const gpu::Ray& ray, const gpu::Hit& hit,
+                                                               const gpu::Light& light) const
 {
     check(light.kind == gpu::kLightPoint || light.kind == gpu::kLightDirectional, "a light of kind {}", light.kind);
     const gpu::BvhTriangle& t = package_.bvhTriangles()[hit.slot];
@@ -121,7 +150,8 @@ std::optional<DirectLight> DirectLightByBothModels::operator()(const gpu::Ray& r
     const Vec point = w0 * a + w1 * b + w2 * c;
     Vec geometric = unit(crossed(b - a, c - a));
     const gpu::uvec3 v = package_.triangles()[t.triangle].vertices;
-    const auto normalOf = [&](uint32_t vertex) { return exact(decodeNormal(package_.vertexAttributes()[vertex].normal)); };
+    const auto normalOf = [&](uint32_t vertex)
+    { return exact(decodeNormal(package_.vertexAttributes()[vertex].normal)); };
     Vec normal = unit(w0 * normalOf(v.x) + w1 * normalOf(v.y) + w2 * normalOf(v.z));
     if (dot(geometric, along) > 0)
     {

@@ -13,7 +13,11 @@ constexpr uint32_t kElements = 100000; // vec3s: many groups, so that dispatches
 class RecorderTest : public GpuTest
 {
 protected:
-    RecorderTest() : accumulate_(device().kernel("resolve/accumulate")), set_size_(device().kernel("rays/set_size")), dispatch_size_(device().kernel("rays/dispatch_size")) {}
+    RecorderTest()
+        : accumulate_(device().kernel("resolve/accumulate")), set_size_(device().kernel("rays/set_size")),
+          dispatch_size_(device().kernel("rays/dispatch_size"))
+    {
+    }
 
     static Buffer filled(float value)
     {
@@ -54,14 +58,15 @@ TEST_F(RecorderTest, OrdersReadsAfterWritesAndWritesAfterReads)
 {
     // a += b, b += a, ... makes Fibonacci numbers: every dispatch reads what the last wrote and writes what it read.
     const Buffer a = zeros(), b = filled(1);
-    submit([&](Recorder& rec)
-    {
-        for (int i = 0; i < 15; ++i)
+    submit(
+        [&](Recorder& rec)
         {
-            add(rec, b, a);
-            add(rec, a, b);
-        }
-    });
+            for (int i = 0; i < 15; ++i)
+            {
+                add(rec, b, a);
+                add(rec, a, b);
+            }
+        });
     expectAll(a, 832040);  // F(30)
     expectAll(b, 1346269); // F(31)
 }
@@ -70,20 +75,21 @@ TEST_F(RecorderTest, OrdersFillsCopiesAndDispatches)
 {
     const Buffer one = filled(1), sum = zeros(), kept = zeros();
     constexpr uint32_t kTwo = 0x40000000; // 2.0f
-    submit([&](Recorder& rec)
-    {
-        for (int i = 0; i < 10; ++i)
+    submit(
+        [&](Recorder& rec)
         {
-            rec.fill(sum, kTwo);                              // after the copy below has read it
-            add(rec, one, sum);                               // 3
-            rec.copy(sum, kept, kElements * sizeof(gpu::vec3)); // 3
-            rec.clear(sum);
-            add(rec, kept, sum); // 3
-            add(rec, sum, kept); // 6
-        }
-        rec.copy(sum, one, kElements * sizeof(gpu::vec3)); // while nothing reads the ones any more
-        add(rec, one, kept);                               // 9
-    });
+            for (int i = 0; i < 10; ++i)
+            {
+                rec.fill(sum, kTwo);                                // after the copy below has read it
+                add(rec, one, sum);                                 // 3
+                rec.copy(sum, kept, kElements * sizeof(gpu::vec3)); // 3
+                rec.clear(sum);
+                add(rec, kept, sum); // 3
+                add(rec, sum, kept); // 6
+            }
+            rec.copy(sum, one, kElements * sizeof(gpu::vec3)); // while nothing reads the ones any more
+            add(rec, one, kept);                               // 9
+        });
     expectAll(sum, 3);
     expectAll(kept, 9);
     expectAll(one, 3);
@@ -101,11 +107,12 @@ TEST_F(RecorderTest, OrdersIndirectDispatchesAfterTheirCountAndTheNextCountAfter
     };
     constexpr uint32_t kSteps = 40;
     const auto countOf = [](uint32_t step) { return (step * 7919) % kElements + 1; };
-    submit([&](Recorder& rec)
-    {
-        for (uint32_t step = 0; step < kSteps; ++step)
-            addFirst(rec, countOf(step));
-    });
+    submit(
+        [&](Recorder& rec)
+        {
+            for (uint32_t step = 0; step < kSteps; ++step)
+                addFirst(rec, countOf(step));
+        });
     std::vector<float> expected(kElements + 1); // a difference a step, then their running sum from behind
     for (uint32_t step = 0; step < kSteps; ++step)
         ++expected[countOf(step) - 1];
@@ -140,11 +147,12 @@ TEST_F(RecorderTest, OrdersOneSubmissionAfterTheOther)
 TEST_F(RecorderTest, RunsNothingForNoThreads)
 {
     const Buffer one = filled(1), sum = zeros();
-    submit([&](Recorder& rec)
-    {
-        rec.run(accumulate_, 0, gpu::AccumulateParams{.pixel_count = kElements, .sample_count = 1},
-                {{"Radiance", one}, {"Sum", sum}, {"Compensation", compensation_}, {"NonFinite", non_finite_}});
-    });
+    submit(
+        [&](Recorder& rec)
+        {
+            rec.run(accumulate_, 0, gpu::AccumulateParams{.pixel_count = kElements, .sample_count = 1},
+                    {{"Radiance", one}, {"Sum", sum}, {"Compensation", compensation_}, {"NonFinite", non_finite_}});
+        });
     expectAll(sum, 0);
 }
 
@@ -188,18 +196,25 @@ TEST_F(RecorderDeathTest, NamesTheKernelsBlocksWhereABindingIsWrong)
     GTEST_FLAG_SET(death_test_style, "threadsafe"); // the device has threads
     const Buffer a = zeros();
     const gpu::TonemapParams params{};
-    EXPECT_DEATH(runTonemap(device(), params, {{"Sum", a}, {"Pixel", a}}), "resolve/tonemap: no block 'Pixel'; its blocks are Sum Pixels|resolve/tonemap: no block 'Pixel'; its blocks are Pixels Sum");
-    EXPECT_DEATH(runTonemap(device(), params, {{"Sum", a}}), "resolve/tonemap: 1 buffers given, the kernel's blocks are (Sum Pixels|Pixels Sum)");
-    EXPECT_DEATH(runTonemap(device(), params, {{"Sum", a}, {"Pixels", a}, {"More", a}}), "resolve/tonemap: 3 buffers given");
-    EXPECT_DEATH(runTonemap(device(), params, {{"Sum", a}, {"Sum", a}}), "resolve/tonemap: block 'Sum' is given twice; its blocks are (Sum Pixels|Pixels Sum)");
+    EXPECT_DEATH(runTonemap(device(), params, {{"Sum", a}, {"Pixel", a}}),
+                 "resolve/tonemap: no block 'Pixel'; its blocks are Sum Pixels|resolve/tonemap: no block 'Pixel'; its "
+                 "blocks are Pixels Sum");
+    EXPECT_DEATH(runTonemap(device(), params, {{"Sum", a}}),
+                 "resolve/tonemap: 1 buffers given, the kernel's blocks are (Sum Pixels|Pixels Sum)");
+    EXPECT_DEATH(runTonemap(device(), params, {{"Sum", a}, {"Pixels", a}, {"More", a}}),
+                 "resolve/tonemap: 3 buffers given");
+    EXPECT_DEATH(runTonemap(device(), params, {{"Sum", a}, {"Sum", a}}),
+                 "resolve/tonemap: block 'Sum' is given twice; its blocks are (Sum Pixels|Pixels Sum)");
 }
 
 TEST_F(RecorderDeathTest, RefusesParametersOfAnotherSize)
 {
     GTEST_FLAG_SET(death_test_style, "threadsafe");
     const Buffer a = zeros();
-    EXPECT_DEATH(runTonemap(device(), gpu::AccumulateParams{}, {{"Sum", a}, {"Pixels", a}}), "resolve/tonemap: 8 bytes of parameters given, the kernel has 16");
-    EXPECT_DEATH(runTonemap(device(), NoParams{}, {{"Sum", a}, {"Pixels", a}}), "resolve/tonemap: 0 bytes of parameters given, the kernel has 16");
+    EXPECT_DEATH(runTonemap(device(), gpu::AccumulateParams{}, {{"Sum", a}, {"Pixels", a}}),
+                 "resolve/tonemap: 8 bytes of parameters given, the kernel has 16");
+    EXPECT_DEATH(runTonemap(device(), NoParams{}, {{"Sum", a}, {"Pixels", a}}),
+                 "resolve/tonemap: 0 bytes of parameters given, the kernel has 16");
 }
 
 TEST_F(RecorderDeathTest, RefusesScopesLeftOpenAndKernelsThatAreNotThere)

@@ -20,8 +20,8 @@ const std::filesystem::path kShared = LUMICUT_SHARED_DIR;
 
 struct Comparison
 {
-    std::string scene;     // below shared/scenes
-    std::string reference; // below shared/references
+    std::string scene;          // below shared/scenes
+    std::string reference;      // below shared/references
     uint32_t reference_samples; // a pixel
     uint32_t samples;           // ours, a pixel, both halves together
     bool lambert = false;       // take the specular layer off every material first
@@ -36,7 +36,10 @@ uint32_t wordAt(const std::string& bytes, size_t at)
     return word;
 }
 
-std::string wordBytes(uint32_t word) { return {reinterpret_cast<const char*>(&word), 4}; }
+std::string wordBytes(uint32_t word)
+{
+    return {reinterpret_cast<const char*>(&word), 4};
+}
 
 /// The same binary glTF with KHR_materials_specular on every material, all factors 0: what remains is Lambert.
 std::string withoutSpecular(const std::string& glb)
@@ -152,14 +155,14 @@ struct Outcome
 Outcome compareAndPrint(const Pictures& p, const Comparison& c, const std::string& what)
 {
     const Outcome o{.metrics = compareImages(p.reference, p.ours), .expected_relmse = expectedRelMse(p, c)};
-    fmt::print("{}, {}: mean ratio {:.4f} {:.4f} {:.4f}, bias z {:.2f}, relMSE {:.5f}, {:.5f} expected of noise\n", c.reference, what,
-               o.metrics.mean_ratio[0], o.metrics.mean_ratio[1], o.metrics.mean_ratio[2], o.metrics.bias_z, o.metrics.relmse,
-               o.expected_relmse);
+    fmt::print("{}, {}: mean ratio {:.4f} {:.4f} {:.4f}, bias z {:.2f}, relMSE {:.5f}, {:.5f} expected of noise\n",
+               c.reference, what, o.metrics.mean_ratio[0], o.metrics.mean_ratio[1], o.metrics.mean_ratio[2],
+               o.metrics.bias_z, o.metrics.relmse, o.expected_relmse);
     return o;
 }
 
-/// Means within 1 % of the reference's, and no more difference than noise makes. Rare bright samples raise both sides of
-/// that alike; what is left to guess is the reference's own noise, 6 % of all at most, hence the factor.
+/// Means within 1 % of the reference's, and no more difference than noise makes. Rare bright samples raise both sides
+/// of that alike; what is left to guess is the reference's own noise, 6 % of all at most, hence the factor.
 void expectAgreement(const Outcome& o)
 {
     constexpr double kMeanTolerance = 0.01, kNoiseFactor = 1.1;
@@ -188,10 +191,22 @@ Opened openScene(const Device& device, const Comparison& c)
 // Where two surfaces that face each other coincide exactly, as the sides of neighbouring tiles do, Cycles shadows each
 // with the other; we do not. Pixels that show such surfaces are left out.
 
-struct Dvec { double x, y, z; };
-Dvec operator-(gpu::vec3 a, gpu::vec3 b) { return {double(a.x) - b.x, double(a.y) - b.y, double(a.z) - b.z}; }
-double dot(Dvec a, Dvec b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-Dvec cross(Dvec a, Dvec b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
+struct Dvec
+{
+    double x, y, z;
+};
+Dvec operator-(gpu::vec3 a, gpu::vec3 b)
+{
+    return {double(a.x) - b.x, double(a.y) - b.y, double(a.z) - b.z};
+}
+double dot(Dvec a, Dvec b)
+{
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+Dvec cross(Dvec a, Dvec b)
+{
+    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
 Dvec unitNormal(const gpu::BvhTriangle& t)
 {
     const Dvec n = cross(t.v1 - t.v0, t.v2 - t.v0);
@@ -202,12 +217,14 @@ Dvec unitNormal(const gpu::BvhTriangle& t)
 constexpr double kCoincident = 1e-4; // metres
 
 /// Triangles in the plane of `triangle`, facing the other way.
-std::vector<uint32_t> opposites(std::span<const gpu::BvhTriangle> triangles, std::span<const Dvec> normals, uint32_t triangle)
+std::vector<uint32_t> opposites(std::span<const gpu::BvhTriangle> triangles, std::span<const Dvec> normals,
+                                uint32_t triangle)
 {
     std::vector<uint32_t> found;
     const gpu::vec3 at = triangles[triangle].v0;
     for (uint32_t i = 0; i < triangles.size(); ++i)
-        if (dot(normals[i], normals[triangle]) < -0.9999 && std::abs(dot(triangles[i].v0 - at, normals[triangle])) < kCoincident)
+        if (dot(normals[i], normals[triangle]) < -0.9999 &&
+            std::abs(dot(triangles[i].v0 - at, normals[triangle])) < kCoincident)
             found.push_back(i);
     return found;
 }
@@ -229,7 +246,8 @@ struct FirstHits
     std::vector<gpu::Hit> hits;
 };
 
-FirstHits firstHits(const Device& device, const SceneGpu& scene, const Camera& camera, uint32_t width, uint32_t height, uint32_t samples)
+FirstHits firstHits(const Device& device, const SceneGpu& scene, const Camera& camera, uint32_t width, uint32_t height,
+                    uint32_t samples)
 {
     const uint32_t count = width * height * samples;
     const RayStage stage(device, scene);
@@ -299,13 +317,18 @@ protected:
 
 TEST_F(References, CornellBoxOfLambertSurfaces)
 {
-    expectAgreementWith({.scene = "truth/cornell.glb", .reference = "cornell_lambert_256_4096.exr", .reference_samples = 4096, .samples = 32});
+    expectAgreementWith({.scene = "truth/cornell.glb",
+                         .reference = "cornell_lambert_256_4096.exr",
+                         .reference_samples = 4096,
+                         .samples = 32});
 }
 
 TEST_F(References, CornellBoxWithGlassMirrorAndGlossyMetal)
 {
-    expectAgreementWith(
-        {.scene = "truth/cornell_caustic.glb", .reference = "cornell_caustic_gltf_256_2048.exr", .reference_samples = 2048, .samples = 32});
+    expectAgreementWith({.scene = "truth/cornell_caustic.glb",
+                         .reference = "cornell_caustic_gltf_256_2048.exr",
+                         .reference_samples = 2048,
+                         .samples = 32});
 }
 
 TEST_F(References, CornellBoxOfAnotherMaker)
@@ -383,7 +406,10 @@ TEST_F(References, DungeonHallOfLambertSurfaces)
 
 TEST_F(References, DungeonHall)
 {
-    const Comparison c{.scene = "scenes/dungeon-hall-cc0.glb", .reference = "dungeon_hall_gltf_320x180_512.exr", .reference_samples = 512, .samples = 32};
+    const Comparison c{.scene = "scenes/dungeon-hall-cc0.glb",
+                       .reference = "dungeon_hall_gltf_320x180_512.exr",
+                       .reference_samples = 512,
+                       .samples = 32};
     Hall hall = renderHall(device(), c);
     compareAndPrint(hall.pictures, c, "without coincident surfaces");
     const ImageF& ours = hall.pictures.ours;

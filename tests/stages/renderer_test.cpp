@@ -12,34 +12,50 @@ constexpr uint32_t kWidth = 48, kHeight = 40;
 /// A room with a lamp, a mirror, glossy metal and glass; `translucent` adds a blended sheet, met by chance.
 std::filesystem::path room(SceneBuilder& scene, bool translucent)
 {
-    const auto metal = [](double roughness) { return nlohmann::json{{"pbrMetallicRoughness", {{"baseColorFactor", {0.9, 0.6, 0.3, 1}}, {"roughnessFactor", roughness}}}}; };
+    const auto metal = [](double roughness)
+    {
+        return nlohmann::json{
+            {"pbrMetallicRoughness", {{"baseColorFactor", {0.9, 0.6, 0.3, 1}}, {"roughnessFactor", roughness}}}};
+    };
     scene.box({-1, 0, -1}, {1, 2, 1}, scene.material(lambert(0.6)), true);
     scene.quad({-0.3f, 1.99f, -0.3f}, {0.6f, 0, 0}, {0, 0, 0.6f}, scene.material(emitter(8)));
     scene.sphere({-0.5f, 0.4f, -0.3f}, 0.3f, 12, true, scene.material(metal(0)));
     scene.sphere({0.5f, 0.4f, -0.3f}, 0.3f, 12, true, scene.material(metal(0.4)));
     scene.sphere({0, 0.9f, 0}, 0.25f, 12, true,
                  scene.material({{"pbrMetallicRoughness", {{"metallicFactor", 0}, {"roughnessFactor", 0}}},
-                                 {"extensions", {{"KHR_materials_transmission", {{"transmissionFactor", 1}}}, {"KHR_materials_volume", {{"thicknessFactor", 0.5}}}}}}));
+                                 {"extensions",
+                                  {{"KHR_materials_transmission", {{"transmissionFactor", 1}}},
+                                   {"KHR_materials_volume", {{"thicknessFactor", 0.5}}}}}}));
     if (translucent)
         scene.quad({-0.8f, 0.3f, 0.4f}, {1.6f, 0, 0}, {0, 1, 0},
-                   scene.material(with(lambert(0.5), {{"alphaMode", "BLEND"}, {"pbrMetallicRoughness", {{"baseColorFactor", {0.2, 0.4, 0.8, 0.4}}}}})));
+                   scene.material(
+                       with(lambert(0.5), {{"alphaMode", "BLEND"},
+                                           {"pbrMetallicRoughness", {{"baseColorFactor", {0.2, 0.4, 0.8, 0.4}}}}})));
     return scene.compile();
 }
 
-const Camera kCamera{.name = "", .position = {0, 1, 0.95f}, .forward = {0, 0, -1}, .up = {0, 1, 0}, .vertical_fov = 1.2f, .orthographic_height = 0};
+const Camera kCamera{.name = "",
+                     .position = {0, 1, 0.95f},
+                     .forward = {0, 0, -1},
+                     .up = {0, 1, 0},
+                     .vertical_fov = 1.2f,
+                     .orthographic_height = 0};
 
 bool equalBits(const std::vector<gpu::vec3>& a, const std::vector<gpu::vec3>& b)
 {
     return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(gpu::vec3)) == 0;
 }
 
-class RendererTest : public GpuTest, public testing::WithParamInterface<Mode> {};
+class RendererTest : public GpuTest, public testing::WithParamInterface<Mode>
+{
+};
 
 TEST_P(RendererTest, GivesTheSameBitsForTheSameSeedAndOthersForAnother)
 {
     SceneBuilder builder;
     const auto scene = load(room(builder, true));
-    const auto picture = [&](uint32_t seed) { return render(*scene, kCamera, Settings(), 4, kWidth, kHeight, GetParam(), seed).pixels; };
+    const auto picture = [&](uint32_t seed)
+    { return render(*scene, kCamera, Settings(), 4, kWidth, kHeight, GetParam(), seed).pixels; };
     const auto first = picture(1);
     EXPECT_TRUE(equalBits(first, picture(1)));
     EXPECT_FALSE(equalBits(first, picture(2)));
