@@ -126,6 +126,8 @@ void Recorder::prepare(const Kernel& kernel, const void* params, size_t param_by
     {
         const auto block = std::ranges::find(code.blocks, binding.block, &KernelBlock::name);
         check(block != code.blocks.end(), "{}: no block '{}'; its blocks are{}", code.name, binding.block, list());
+        check(std::ranges::count(bindings, binding.block, &Binding::block) == 1, "{}: block '{}' is given twice; its blocks are{}",
+              code.name, binding.block, list());
         hazard |= conflicts(binding.buffer, block->writes);
         infos[count] = {.buffer = binding.buffer.handle(), .offset = 0, .range = VK_WHOLE_SIZE};
         writes[count] = {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,

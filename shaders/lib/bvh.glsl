@@ -72,10 +72,9 @@ bool hitTriangle(uint slot, TriangleRay ray, float t_min, inout Hit hit)
     vec3 a = loadBvhTriangle(slot).v0 - ray.origin;
     vec3 b = loadBvhTriangle(slot).v1 - ray.origin;
     vec3 c = loadBvhTriangle(slot).v2 - ray.origin;
-    precise vec3 x = vec3(fma(ray.x.x, a.x, fma(ray.x.y, a.y, ray.x.z * a.z)), fma(ray.x.x, b.x, fma(ray.x.y, b.y, ray.x.z * b.z)),
-                          fma(ray.x.x, c.x, fma(ray.x.y, c.y, ray.x.z * c.z)));
-    precise vec3 y = vec3(fma(ray.y.x, a.x, fma(ray.y.y, a.y, ray.y.z * a.z)), fma(ray.y.x, b.x, fma(ray.y.y, b.y, ray.y.z * b.z)),
-                          fma(ray.y.x, c.x, fma(ray.y.y, c.y, ray.y.z * c.z)));
+    vec3 px = vec3(a.x, b.x, c.x), py = vec3(a.y, b.y, c.y), pz = vec3(a.z, b.z, c.z);
+    precise vec3 x = fma(vec3(ray.x.x), px, fma(vec3(ray.x.y), py, ray.x.z * pz)); // of the corners' projections
+    precise vec3 y = fma(vec3(ray.y.x), px, fma(vec3(ray.y.y), py, ray.y.z * pz));
     precise float u = x.x * y.z - x.z * y.x; // weight of v1
     precise float v = x.y * y.x - x.x * y.y; // weight of v2
     precise float w = x.z * y.y - x.y * y.z; // weight of v0

@@ -11,6 +11,7 @@ vec3 toSrgb(vec3 linear)
 /// Narkowicz's 2015 fit of the ACES reference curve, per channel.
 vec3 tonemapAces(vec3 x)
 {
+    x = min(x, 1e4); // white long before; squares of much more overflow
     return clamp(x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14), 0.0, 1.0);
 }
 

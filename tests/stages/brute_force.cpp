@@ -11,14 +11,32 @@ struct Vec
 {
     double x, y, z;
 };
-Vec operator+(Vec a, Vec b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-Vec operator-(Vec a, Vec b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-double dot(Vec a, Vec b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-Vec cross(Vec a, Vec b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
-double length(Vec a) { return std::sqrt(dot(a, a)); }
-Vec exact(gpu::vec3 v) { return {v.x, v.y, v.z}; }
+Vec operator+(Vec a, Vec b)
+{
+    return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+Vec operator-(Vec a, Vec b)
+{
+    return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+double dot(Vec a, Vec b)
+{
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+Vec cross(Vec a, Vec b)
+{
+    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+double length(Vec a)
+{
+    return std::sqrt(dot(a, a));
+}
+Vec exact(gpu::vec3 v)
+{
+    return {v.x, v.y, v.z};
+}
 
-constexpr double kUlp = 0x1p-24;           // relative error of one rounding
+constexpr double kUlp = 0x1p-24;              // relative error of one rounding
 constexpr double kRoot3 = 1.7320508075688772; // a bound on components bounds the length
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
@@ -32,7 +50,8 @@ struct Errors
     Errors(double reach, double edge, double normal)
     {
         const double in_edge = 3 * reach, in_sum = 4 * reach;
-        edge_function = kUlp * (kRoot3 * (2 * reach * in_edge + edge * in_sum + 3 * 2 * reach * edge) + 3 * 2 * reach * edge);
+        edge_function =
+            kUlp * (kRoot3 * (2 * reach * in_edge + edge * in_sum + 3 * 2 * reach * edge) + 3 * 2 * reach * edge);
         const double in_normal = kRoot3 * (2 * edge * in_edge + 3 * edge * edge);
         numerator = kUlp * (in_normal * reach + 4 * normal * reach);
         denominator = kUlp * (in_normal + 3 * normal);
@@ -48,14 +67,21 @@ std::optional<Meeting> meet(const gpu::Ray& ray, const gpu::BvhTriangle& triangl
     const double edge = std::max({length(b - a), length(c - b), length(a - c)});
     const Errors error(reach, edge, length(normal));
 
-    const double u = dot(cross(c + a, c - a), direction), v = dot(cross(a + b, a - b), direction), w = dot(cross(b + c, b - c), direction);
+    const double u = dot(cross(c + a, c - a), direction), v = dot(cross(a + b, a - b), direction),
+                 w = dot(cross(b + c, b - c), direction);
     const double sign = u + v + w < 0 ? -1 : 1, sum = sign * (u + v + w);
     const double least = std::min({sign * u, sign * v, sign * w});
     if (least < -error.edge_function)
         return std::nullopt;
 
     const double along = dot(normal, direction);
-    Meeting m{.slot = slot, .t = dot(normal, a) / along, .t_error = kInfinite, .u = 0, .v = 0, .weight_error = kInfinite, .certain = false};
+    Meeting m{.slot = slot,
+              .t = dot(normal, a) / along,
+              .t_error = kInfinite,
+              .u = 0,
+              .v = 0,
+              .weight_error = kInfinite,
+              .certain = false};
     if (std::abs(along) < 2 * error.denominator || sum < 6 * error.edge_function)
         return m; // nothing is sure of a triangle seen edge-on
     m.t_error = 2 * (error.numerator + std::abs(m.t) * error.denominator) / std::abs(along) + 3 * kUlp * std::abs(m.t);

@@ -5,10 +5,11 @@
 #include <span>
 #include <vector>
 
-/// What exact arithmetic says of one ray and one triangle, with bounds on what the kernels' single precision may differ.
+/// What exact arithmetic says of one ray and one triangle, with bounds on what the kernels' single precision may
+/// differ.
 struct Meeting
 {
-    uint32_t slot;       // of the BvhTriangle
+    uint32_t slot; // of the BvhTriangle
     double t;
     double t_error;      // bound; infinite where the ray is (nearly) in the triangle's plane
     double u, v;         // weights of v1 and v2

@@ -14,7 +14,10 @@ DeviceInfo device(uint32_t index, const std::string& name, const std::string& ki
     return {.index = index, .name = name, .kind = kind, .driver = "", .memory_bytes = 0, .lacks = std::move(lacks)};
 }
 
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+bool contains(const std::string& text, const std::string& part)
+{
+    return text.find(part) != std::string::npos;
+}
 
 /// A refusal by kDevice whose sentence holds all of `parts`.
 void expectRefusal(const Result<uint32_t>& chosen, const std::vector<std::string>& parts)
@@ -47,7 +50,8 @@ TEST(SelectDevice, PrefersDiscreteThenIntegratedThenVirtualThenCpuInAnyOrderOfTh
 
 TEST(SelectDevice, TakesTheFirstOfEqualKinds)
 {
-    const std::vector<DeviceInfo> devices{device(0, "A", "cpu"), device(1, "B", "discrete"), device(2, "C", "discrete")};
+    const std::vector<DeviceInfo> devices{device(0, "A", "cpu"), device(1, "B", "discrete"),
+                                          device(2, "C", "discrete")};
     const auto chosen = selectDevice(devices, "");
     ASSERT_TRUE(chosen);
     EXPECT_EQ(*chosen, 1u);
@@ -55,7 +59,8 @@ TEST(SelectDevice, TakesTheFirstOfEqualKinds)
 
 TEST(SelectDevice, PassesOverDevicesThatLackFeatures)
 {
-    const std::vector<DeviceInfo> devices{device(0, "Big", "discrete", {"scalarBlockLayout"}), device(1, "Small", "cpu")};
+    const std::vector<DeviceInfo> devices{device(0, "Big", "discrete", {"scalarBlockLayout"}),
+                                          device(1, "Small", "cpu")};
     for (const std::string selector : {"", "cpu", "1", "small"})
     {
         const auto chosen = selectDevice(devices, selector);
@@ -66,9 +71,10 @@ TEST(SelectDevice, PassesOverDevicesThatLackFeatures)
 
 TEST(SelectDevice, FindsByIndexByKindAndByPartOfTheNameInAnyCase)
 {
-    const std::vector<DeviceInfo> devices{device(0, "NVIDIA H200", "discrete"), device(1, "llvmpipe (LLVM 15, 256 bits)", "cpu"),
+    const std::vector<DeviceInfo> devices{device(0, "NVIDIA H200", "discrete"),
+                                          device(1, "llvmpipe (LLVM 15, 256 bits)", "cpu"),
                                           device(2, "Intel Arc 770", "integrated")};
-    const std::vector<std::pair<std::string, uint32_t>> cases{{"0", 0},   {"1", 1},     {"2", 2},      {"cpu", 1},
+    const std::vector<std::pair<std::string, uint32_t>> cases{{"0", 0},    {"1", 1},    {"2", 2},      {"cpu", 1},
                                                               {"LLVM", 1}, {"h200", 0}, {"arc 77", 2}, {"(llvm 15", 1}};
     for (const auto& [selector, index] : cases)
     {
@@ -89,12 +95,11 @@ TEST(SelectDevice, SaysWhatEachDeviceLacks)
 {
     const std::vector<DeviceInfo> devices{
         device(0, "Old", "discrete", {"Vulkan 1.3 (it offers 1.1): a newer driver is needed"}),
-        device(1, "Odd", "integrated", {"synchronization2: barriers", "VK_KHR_push_descriptor: every kernel's buffers"})};
-    const std::vector<std::string> all{"0: Old (discrete)",
-                                       "lacks Vulkan 1.3 (it offers 1.1): a newer driver is needed",
-                                       "1: Odd (integrated)",
-                                       "lacks synchronization2: barriers",
-                                       "lacks VK_KHR_push_descriptor: every kernel's buffers"};
+        device(1, "Odd", "integrated",
+               {"synchronization2: barriers", "VK_KHR_push_descriptor: every kernel's buffers"})};
+    const std::vector<std::string> all{
+        "0: Old (discrete)", "lacks Vulkan 1.3 (it offers 1.1): a newer driver is needed", "1: Odd (integrated)",
+        "lacks synchronization2: barriers", "lacks VK_KHR_push_descriptor: every kernel's buffers"};
     for (const std::string selector : {"", "0", "odd"})
     {
         SCOPED_TRACE(selector);
@@ -140,7 +145,8 @@ TEST(ApplySetting, ReachesEveryKnobFromItsLeastToItsMost)
                 continue;
             }
             ASSERT_TRUE(status) << status.error().message;
-            EXPECT_EQ(std::visit([&](auto member) { return double(settings.*member); }, knob.member), value) << knob.name;
+            EXPECT_EQ(std::visit([&](auto member) { return double(settings.*member); }, knob.member), value)
+                << knob.name;
         }
     Settings settings;
     for (const auto& [name, value] : {std::pair("srgb", 0u), std::pair("aces", 1u), std::pair("agx", 2u)})

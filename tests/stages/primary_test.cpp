@@ -8,8 +8,14 @@
 
 namespace
 {
-double dot(gpu::vec3 a, gpu::vec3 b) { return double(a.x) * b.x + double(a.y) * b.y + double(a.z) * b.z; }
-double length(gpu::vec3 a) { return std::sqrt(dot(a, a)); }
+double dot(gpu::vec3 a, gpu::vec3 b)
+{
+    return double(a.x) * b.x + double(a.y) * b.y + double(a.z) * b.z;
+}
+double length(gpu::vec3 a)
+{
+    return std::sqrt(dot(a, a));
+}
 
 struct Point
 {
@@ -22,10 +28,11 @@ protected:
     static std::vector<gpu::Ray> generate(const gpu::CameraParams& params)
     {
         const uint32_t count = params.width * params.height * params.sample_count;
+        const Kernel kernel = device().kernel("primary/generate");
         const Buffer rays = device().array<gpu::Ray>("test.rays", count);
         Recorder rec(device());
         rec.begin(VK_NULL_HANDLE);
-        rec.run(device().kernel("primary/generate"), count, params, {{"Rays", rays}});
+        rec.run(kernel, count, params, {{"Rays", rays}});
         rec.submitAndWait();
         return device().download<gpu::Ray>(rays, count);
     }
@@ -62,7 +69,8 @@ Point seenAt(const Camera& camera, const gpu::Ray& ray, uint32_t width, uint32_t
     const double depth = orthographic ? 1 : dot(ray.direction, camera.forward);
     const double half_height = orthographic ? camera.orthographic_height / 2.0 : std::tan(camera.vertical_fov / 2.0);
     const double half_width = half_height * width / height; // square pixels
-    return {(dot(across, right) / depth / half_width + 1) / 2 * width, (1 - dot(across, camera.up) / depth / half_height) / 2 * height};
+    return {(dot(across, right) / depth / half_width + 1) / 2 * width,
+            (1 - dot(across, camera.up) / depth / half_height) / 2 * height};
 }
 
 struct View
@@ -76,10 +84,17 @@ struct View
 Camera cameraAt(gpu::vec3 position, gpu::vec3 forward, float vertical_fov, float orthographic_height)
 {
     const gpu::vec3 along = normalize(forward), right = normalize(cross(along, {0, 1, 0}));
-    return {.name = "", .position = position, .forward = along, .up = cross(right, along), .vertical_fov = vertical_fov, .orthographic_height = orthographic_height};
+    return {.name = "",
+            .position = position,
+            .forward = along,
+            .up = cross(right, along),
+            .vertical_fov = vertical_fov,
+            .orthographic_height = orthographic_height};
 }
 
-class Views : public CameraRays, public testing::WithParamInterface<View> {};
+class Views : public CameraRays, public testing::WithParamInterface<View>
+{
+};
 
 TEST_P(Views, SendRaysThroughTheirPixels)
 {
@@ -92,7 +107,15 @@ TEST_P(Views, SendRaysThroughTheirPixels)
     const std::vector<gpu::Ray> rays = generate(params);
     const uint32_t pixel_count = view.width * view.height;
     // The same pixels of another camera: how a pixel is sampled is no matter of the camera's.
-    gpu::CameraParams plain{.right = {1, 0, 0}, .up = {0, 1, 0}, .forward = {0, 0, -1}, .width = view.width, .height = view.height, .orthographic = 1, .sample_count = kSamples, .first_sample = kFirst, .seed = kSeed};
+    gpu::CameraParams plain{.right = {1, 0, 0},
+                            .up = {0, 1, 0},
+                            .forward = {0, 0, -1},
+                            .width = view.width,
+                            .height = view.height,
+                            .orthographic = 1,
+                            .sample_count = kSamples,
+                            .first_sample = kFirst,
+                            .seed = kSeed};
     const std::vector<gpu::Ray> plain_rays = generate(plain);
 
     constexpr double kTolerance = 2e-6; // of the picture's size: some roundings of directions and positions
@@ -136,7 +159,8 @@ INSTANTIATE_TEST_SUITE_P(, Views,
                          testing::Values(View{"Wide", cameraAt({1, 2, 3}, {0.3f, -0.5f, -1}, 1.2f, 0), 64, 20},
                                          View{"Tall", cameraAt({-5, 0, 2}, {1, 0.2f, 0.1f}, 0.5f, 0), 17, 64},
                                          View{"NearlyHemispherical", cameraAt({0, 0, 0}, {0, 0, 1}, 3.0f, 0), 32, 32},
-                                         View{"Orthographic", cameraAt({0.5f, 0.25f, 1}, {0.3f, -0.5f, -1}, 0, 3), 40, 30}),
+                                         View{"Orthographic", cameraAt({0.5f, 0.25f, 1}, {0.3f, -0.5f, -1}, 0, 3), 40,
+                                              30}),
                          [](const auto& view) { return view.param.name; });
 
 // ---- Stratification ------------------------------------------------------------------------------------------------
@@ -189,21 +213,32 @@ TEST_F(CameraRays, AreIndependentFromPixelToPixelAndFromSeedToSeed)
 {
     // Correlation of the first samples' x over many seeds, with the next seed's and with the sample's own y.
     constexpr uint32_t kSide = 100, kCount = kSide * kSide;
-    const gpu::CameraParams params{.right = {1, 0, 0}, .up = {0, 1, 0}, .forward = {0, 0, -1}, .width = kSide, .height = kSide, .orthographic = 1, .sample_count = 1, .first_sample = 0, .seed = 1};
+    const gpu::CameraParams params{.right = {1, 0, 0},
+                                   .up = {0, 1, 0},
+                                   .forward = {0, 0, -1},
+                                   .width = kSide,
+                                   .height = kSide,
+                                   .orthographic = 1,
+                                   .sample_count = 1,
+                                   .first_sample = 0,
+                                   .seed = 1};
     gpu::CameraParams reseeded = params;
     reseeded.seed = 2;
     const auto within = [](const std::vector<gpu::Ray>& rays)
     {
         std::vector<Point> points;
         for (uint32_t i = 0; i < kCount; ++i)
-            points.push_back({(double(rays[i].origin.x) + 1) / 2 * kSide - i % kSide - 0.5, (1 - double(rays[i].origin.y)) / 2 * kSide - i / kSide - 0.5});
+            points.push_back({(double(rays[i].origin.x) + 1) / 2 * kSide - i % kSide - 0.5,
+                              (1 - double(rays[i].origin.y)) / 2 * kSide - i / kSide - 0.5});
         return points;
     };
     const std::vector<Point> points = within(generate(params)), others = within(generate(reseeded));
-    std::array<double, 4> products{}; // with the right neighbour's x, the lower neighbour's x, the other seed's x, its own y
+    std::array<double, 4>
+        products{}; // with the right neighbour's x, the lower neighbour's x, the other seed's x, its own y
     for (uint32_t i = 0; i < kCount; ++i)
     {
-        const std::array<double, 4> partner{points[(i + 1) % kCount].x, points[(i + kSide) % kCount].x, others[i].x, points[i].y};
+        const std::array<double, 4> partner{points[(i + 1) % kCount].x, points[(i + kSide) % kCount].x, others[i].x,
+                                            points[i].y};
         for (size_t k = 0; k < 4; ++k)
             products[k] += 12 * points[i].x * partner[k] / kCount; // a correlation coefficient: variances are 1/12
     }

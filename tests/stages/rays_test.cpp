@@ -1,100 +1,13 @@
-// The one traversal against brute force over all triangles, and as a sieve: closed surfaces let no ray out.
-#include "runtime/camera.h"
-#include "runtime/stages/rays.h"
+// The one traversal against brute force over all triangles, and through translucent layers.
 #include "tests/stages/brute_force.h"
-#include "tests/stages/gpu_test.h"
-#include "tests/stages/triangle_scene.h"
+#include "tests/stages/ray_test.h"
 
+#include <array>
 #include <cmath>
-#include <functional>
 #include <map>
-#include <random>
 
 namespace
 {
-constexpr float kFar = 3e38f; // kInfinity of the shaders
-
-gpu::vec3 lerp(gpu::vec3 a, gpu::vec3 b, float t) { return a + t * (b + -1.0f * a); }
-
-/// Unit vector; +z where the two points are one.
-gpu::vec3 directionTo(gpu::vec3 to, gpu::vec3 from)
-{
-    const double x = double(to.x) - from.x, y = double(to.y) - from.y, z = double(to.z) - from.z, l = std::sqrt(x * x + y * y + z * z);
-    return l > 0 ? gpu::vec3{float(x / l), float(y / l), float(z / l)} : gpu::vec3{0, 0, 1};
-}
-
-/// Random numbers of one test: the same in every run.
-class Random
-{
-public:
-    explicit Random(uint32_t seed) : engine_(seed) {}
-    float unit() { return std::uniform_real_distribution<float>(0, 1)(engine_); }
-    float between(float low, float high) { return low + (high - low) * unit(); }
-    uint32_t below(uint32_t count) { return std::uniform_int_distribution<uint32_t>(0, count - 1)(engine_); }
-    gpu::vec3 inBox(gpu::vec3 low, gpu::vec3 high)
-    {
-        return {between(low.x, high.x), between(low.y, high.y), between(low.z, high.z)};
-    }
-    gpu::vec3 direction()
-    {
-        std::normal_distribution<double> normal;
-        const double x = normal(engine_), y = normal(engine_), z = normal(engine_), l = std::sqrt(x * x + y * y + z * z);
-        return {float(x / l), float(y / l), float(z / l)};
-    }
-    gpu::vec3 onTriangle(const gpu::BvhTriangle& t)
-    {
-        const float r = std::sqrt(unit()), s = unit();
-        return lerp(t.v0, lerp(t.v1, t.v2, s), r);
-    }
-
-private:
-    std::mt19937 engine_;
-};
-
-class Rays : public GpuTest
-{
-protected:
-    static std::vector<gpu::Hit> closest(const LoadedScene& scene, std::span<const gpu::Ray> rays, uint32_t seed = 1)
-    {
-        const RayStage stage(device(), *scene.gpu);
-        const uint32_t count = uint32_t(rays.size());
-        RayQueue queue(device(), "test.queue", 1);
-        queue.rays = device().upload("test.rays", rays);
-        const Buffer hits = device().array<gpu::Hit>("test.hits", count);
-        Recorder rec(device());
-        rec.begin(scene.gpu->descriptorSet());
-        stage.resize(rec, queue.size, count);
-        stage.closest(rec, queue, hits, seed);
-        rec.submitAndWait();
-        return device().download<gpu::Hit>(hits, count);
-    }
-
-    /// What of `light` arrives along each ray, on top of `before`.
-    static std::vector<gpu::vec3> visible(const LoadedScene& scene, std::span<const gpu::Ray> rays, gpu::vec3 light, gpu::vec3 before)
-    {
-        const RayStage stage(device(), *scene.gpu);
-        const uint32_t count = uint32_t(rays.size());
-        std::vector<gpu::ShadowRay> shadow_rays;
-        for (uint32_t i = 0; i < count; ++i)
-        {
-            shadow_rays.push_back({rays[i], light});
-            shadow_rays.back().ray.path = count - 1 - i; // any one-to-one mapping will do
-        }
-        const std::vector<gpu::vec3> start(count, before);
-        const Buffer size = device().array<gpu::QueueSize>("test.size", 1);
-        const Buffer queue = device().upload<gpu::ShadowRay>("test.shadow_rays", shadow_rays);
-        const Buffer radiance = device().upload<gpu::vec3>("test.radiance", start);
-        Recorder rec(device());
-        rec.begin(scene.gpu->descriptorSet());
-        stage.resize(rec, size, count);
-        stage.visible(rec, size, queue, radiance);
-        rec.submitAndWait();
-        std::vector<gpu::vec3> arrived = device().download<gpu::vec3>(radiance, count);
-        std::ranges::reverse(arrived);
-        return arrived;
-    }
-};
-
 // ---- Against brute force -------------------------------------------------------------------------------------------
 
 /// A few thousand triangles of every kind in the unit cube, moved by `offset`.
@@ -120,7 +33,8 @@ TriangleScene mixedScene(gpu::vec3 offset)
         scene.box(low, low + random.inBox({0.01f, 0.01f, 0.01f}, {0.2f, 0.2f, 0.2f}), 1);
     }
     for (int i = 0; i < 60; ++i) // quads that overlap in one plane
-        scene.quad(random.inBox({0, 0.5f, 0}, {0.7f, 0.5f, 0.7f}) + offset, {random.between(0.05f, 0.3f), 0, 0}, {0, 0, random.between(0.05f, 0.3f)});
+        scene.quad(random.inBox({0, 0.5f, 0}, {0.7f, 0.5f, 0.7f}) + offset, {random.between(0.05f, 0.3f), 0, 0},
+                   {0, 0, random.between(0.05f, 0.3f)});
     return scene;
 }
 
@@ -147,7 +61,10 @@ std::vector<gpu::Ray> mixedRays(std::span<const gpu::BvhTriangle> triangles, gpu
     for (uint32_t i = 0; i < count; ++i)
     {
         const gpu::BvhTriangle& some = triangles[random.below(uint32_t(triangles.size()))];
-        gpu::Ray ray{.origin = random.inBox({-0.2f, -0.2f, -0.2f}, {1.2f, 1.2f, 1.2f}) + offset, .t_max = kFar, .direction = random.direction(), .path = i};
+        gpu::Ray ray{.origin = random.inBox({-0.2f, -0.2f, -0.2f}, {1.2f, 1.2f, 1.2f}) + offset,
+                     .t_max = kFar,
+                     .direction = random.direction(),
+                     .path = i};
         if (i % 4 == 1)
             ray.origin = random.onTriangle(some);
         if (i % 8 == 2)
@@ -164,10 +81,11 @@ std::vector<gpu::Ray> mixedRays(std::span<const gpu::BvhTriangle> triangles, gpu
 }
 
 /// Everything a hit must be by brute force; `decided` counts rays for which rounding left no choice of hit or miss.
-void expectNearest(const gpu::Ray& ray, const gpu::Hit& hit, std::span<const gpu::BvhTriangle> triangles, uint32_t& decided)
+void expectNearest(const gpu::Ray& ray, const gpu::Hit& hit, std::span<const gpu::BvhTriangle> triangles,
+                   uint32_t& decided)
 {
-    SCOPED_TRACE(fmt::format("ray {} from {} {} {} along {} {} {} to {}", ray.path, ray.origin.x, ray.origin.y, ray.origin.z,
-                             ray.direction.x, ray.direction.y, ray.direction.z, ray.t_max));
+    SCOPED_TRACE(fmt::format("ray {} from {} {} {} along {} {} {} to {}", ray.path, ray.origin.x, ray.origin.y,
+                             ray.origin.z, ray.direction.x, ray.direction.y, ray.direction.z, ray.t_max));
     const std::vector<Meeting> all = meetings(ray, triangles);
     const bool any_certain = std::ranges::any_of(all, &Meeting::certain);
     decided += any_certain || all.empty();
@@ -187,7 +105,8 @@ void expectNearest(const gpu::Ray& ray, const gpu::Hit& hit, std::span<const gpu
         EXPECT_LE(std::abs(hit.barycentrics.y - met->v), met->weight_error);
     }
     for (const Meeting& m : all)
-        EXPECT_TRUE(!m.certain || hit.t <= m.t + m.t_error) << "triangle " << m.slot << " at " << m.t << " is nearer than " << hit.slot;
+        EXPECT_TRUE(!m.certain || hit.t <= m.t + m.t_error)
+            << "triangle " << m.slot << " at " << m.t << " is nearer than " << hit.slot;
 }
 
 struct Place
@@ -197,7 +116,9 @@ struct Place
     double least_decided; // fraction of the rays
 };
 
-class RaysAt : public Rays, public testing::WithParamInterface<Place> {};
+class RaysAt : public Rays, public testing::WithParamInterface<Place>
+{
+};
 
 TEST_P(RaysAt, FindTheNearestTriangleOfAll)
 {
@@ -239,7 +160,8 @@ TEST_P(RaysAt, AreVisibleWhereNothingIsInBetween)
 }
 
 INSTANTIATE_TEST_SUITE_P(, RaysAt,
-                         testing::Values(Place{"TheOrigin", {0, 0, 0}, 0.9}, Place{"AKilometreAway", {1000, -1000, 1000}, 0.7}),
+                         testing::Values(Place{"TheOrigin", {0, 0, 0}, 0.9},
+                                         Place{"AKilometreAway", {1000, -1000, 1000}, 0.7}),
                          [](const auto& place) { return place.param.name; });
 
 TEST_F(Rays, EndAtTheirGreatestDistance)
@@ -247,7 +169,9 @@ TEST_F(Rays, EndAtTheirGreatestDistance)
     TriangleScene builder;
     builder.quad({-1, -1, 2}, {2, 0, 0}, {0, 2, 0});
     const LoadedScene scene = builder.load(device());
-    const auto ray = [](float t_max) { return gpu::Ray{.origin = {0.25f, 0.5f, 0}, .t_max = t_max, .direction = {0, 0, 1}, .path = 0}; };
+    const auto ray = [](float t_max) {
+        return gpu::Ray{.origin = {0.25f, 0.5f, 0}, .t_max = t_max, .direction = {0, 0, 1}, .path = 0};
+    };
     const float below = std::nextafter(2.0f, 0.0f), above = std::nextafter(2.0f, 3.0f);
     const std::vector<gpu::Ray> rays{ray(0), ray(1), ray(below), ray(2), ray(above), ray(3), ray(kFar)};
     const std::vector<gpu::Hit> hits = closest(scene, rays);
@@ -260,77 +184,6 @@ TEST_F(Rays, EndAtTheirGreatestDistance)
         EXPECT_EQ(hits[i].t, met ? 2 : rays[i].t_max);
     }
 }
-
-// ---- Closed surfaces -----------------------------------------------------------------------------------------------
-
-constexpr uint32_t kRaysInside = 200000;
-
-/// Rays from points near `center`: at random, at every corner of a triangle, and at points of edges.
-std::vector<gpu::Ray> raysFromInside(const WorldMesh& mesh, const std::function<gpu::vec3(Random&)>& origin)
-{
-    Random random(3);
-    std::vector<gpu::Ray> rays;
-    for (uint32_t i = 0; i < kRaysInside; ++i)
-    {
-        gpu::Ray ray{.origin = origin(random), .t_max = kFar, .direction = random.direction(), .path = i};
-        const gpu::uvec3 t = mesh.triangles[random.below(uint32_t(mesh.triangles.size()))];
-        const gpu::vec3 a = mesh.positions[t.x], b = mesh.positions[t.y];
-        if (i % 4 == 1)
-            ray.direction = directionTo(a, ray.origin);
-        if (i % 4 == 2)
-            ray.direction = directionTo(lerp(a, b, random.unit()), ray.origin);
-        if (i % 4 == 3)
-            ray.direction = directionTo(lerp(a, b, float(random.below(9)) / 8), ray.origin);
-        rays.push_back(ray);
-    }
-    return rays;
-}
-
-struct Enclosure
-{
-    const char* name;
-    gpu::vec3 center;
-    bool sphere;
-    bool from_center; // all rays start in the very centre
-};
-
-class Enclosed : public Rays, public testing::WithParamInterface<Enclosure> {};
-
-TEST_P(Enclosed, RaysNeverEscape)
-{
-    const Enclosure& e = GetParam();
-    TriangleScene builder;
-    if (e.sphere)
-        builder.sphere(e.center, 1, 24);
-    else
-        builder.box(e.center + gpu::vec3{-1, -1, -1}, e.center + gpu::vec3{1, 1, 1}, 12);
-    const LoadedScene scene = builder.load(device());
-    const std::vector<gpu::Ray> rays = raysFromInside(builder.mesh(), [&](Random& random)
-                                                      { return e.from_center ? e.center : random.inBox({-0.5f, -0.5f, -0.5f}, {0.5f, 0.5f, 0.5f}) + e.center; });
-    const std::vector<gpu::Hit> hits = closest(scene, rays);
-    const std::vector<gpu::vec3> arrived = visible(scene, rays, {1, 1, 1}, {0, 0, 0});
-    std::map<uint32_t, uint32_t> escaped, seen_through; // by kind of ray
-    for (size_t i = 0; i < rays.size(); ++i)
-    {
-        escaped[i % 4] += hits[i].slot == gpu::kNone;
-        seen_through[i % 4] += arrived[i].x != 0;
-    }
-    for (uint32_t kind = 0; kind < 4; ++kind)
-    {
-        EXPECT_EQ(escaped[kind], 0u) << "kind " << kind;
-        EXPECT_EQ(seen_through[kind], 0u) << "kind " << kind;
-    }
-}
-
-INSTANTIATE_TEST_SUITE_P(, Enclosed,
-                         testing::Values(Enclosure{"InABox", {0, 0, 0}, false, false},
-                                         Enclosure{"InABoxFromItsCentre", {0, 0, 0}, false, true},
-                                         Enclosure{"InABoxAKilometreAway", {1000, -1000, 1000}, false, false},
-                                         Enclosure{"InABoxAKilometreAwayFromItsCentre", {1000, -1000, 1000}, false, true},
-                                         Enclosure{"InASphere", {0, 0, 0}, true, false},
-                                         Enclosure{"InASphereFromItsCentre", {0, 0, 0}, true, true},
-                                         Enclosure{"InASphereAKilometreAway", {1000, 1000, -1000}, true, false}),
-                         [](const auto& enclosure) { return enclosure.param.name; });
 
 // ---- Translucent surfaces ------------------------------------------------------------------------------------------
 
@@ -355,7 +208,10 @@ gpu::Material pane(gpu::vec3 tint, float transmission, float specular, float ior
     return m;
 }
 
-double square(double x) { return x * x; }
+double square(double x)
+{
+    return x * x;
+}
 
 /// Reflectance of a dielectric boundary under `cosine`, by the amplitudes' formulas.
 double fresnel(double cosine, double ior)
@@ -375,7 +231,8 @@ std::array<double, 3> crossed(const gpu::Material& m, double cosine)
     double enters = 0;
     if (m.flags & gpu::kMaterialThin)
     {
-        const double normal = square((double(m.ior) - 1) / (double(m.ior) + 1)), f0 = std::min(normal * m.specular_color.x, 1.0) * m.specular;
+        const double normal = square((double(m.ior) - 1) / (double(m.ior) + 1)),
+                     f0 = std::min(normal * m.specular_color.x, 1.0) * m.specular;
         enters = (1 - (f0 + (m.specular - f0) * (fresnel(cosine, m.ior) - normal) / (1 - normal))) * m.transmission;
     }
     const auto channel = [&](double tint) { return 1 - coverage * (1 - enters * tint); };
@@ -389,9 +246,15 @@ TEST_F(Rays, CrossTranslucentLayersWithTheProductOfWhatEachLetsThrough)
     gpu::Material tinted_blend = pane({0.5f, 1, 0.25f}, 1, 1, 1.5f);
     tinted_blend.flags |= gpu::kMaterialAlphaBlend;
     tinted_blend.alpha = 0.5f;
-    const std::vector<gpu::Material> materials{blend(0.3f),        blend(0),           blend(0.95f), holes,
-                                               no_holes,           tinted_blend,       plainMaterial(),
-                                               pane({1, 0.5f, 0.25f}, 1, 0, 1.5f),     pane({0.9f, 0.8f, 0.7f}, 0.75f, 1, 1.5f),
+    const std::vector<gpu::Material> materials{blend(0.3f),
+                                               blend(0),
+                                               blend(0.95f),
+                                               holes,
+                                               no_holes,
+                                               tinted_blend,
+                                               plainMaterial(),
+                                               pane({1, 0.5f, 0.25f}, 1, 0, 1.5f),
+                                               pane({0.9f, 0.8f, 0.7f}, 0.75f, 1, 1.5f),
                                                pane({1, 1, 1}, 1, 0.5f, 1.2f)};
     TriangleScene builder;
     Random random(5);
@@ -399,8 +262,9 @@ TEST_F(Rays, CrossTranslucentLayersWithTheProductOfWhatEachLetsThrough)
         builder.material(m);
     constexpr uint32_t kLayers = 60; // small ones side by side: a ray crosses several, in every combination
     for (uint32_t i = 0; i < kLayers; ++i)
-        builder.quad({random.between(-2, 1), random.between(-2, 1), 1 + 0.05f * float(i)}, {random.between(0.3f, 1.2f), 0, 0},
-                     {0, random.between(0.3f, 1.2f), 0}, 1 + i % uint32_t(materials.size()));
+        builder.quad({random.between(-2, 1), random.between(-2, 1), 1 + 0.05f * float(i)},
+                     {random.between(0.3f, 1.2f), 0, 0}, {0, random.between(0.3f, 1.2f), 0},
+                     1 + i % uint32_t(materials.size()));
     const LoadedScene scene = builder.load(device());
     const auto triangles = scene.package.bvhTriangles();
 
@@ -409,7 +273,10 @@ TEST_F(Rays, CrossTranslucentLayersWithTheProductOfWhatEachLetsThrough)
     {
         const gpu::vec3 from = random.inBox({-2, -2, 0}, {2, 2, 0.5f}), to = random.inBox({-2, -2, 4.2f}, {2, 2, 5});
         const bool up = i % 2 == 0;
-        rays.push_back({.origin = up ? from : to, .t_max = i % 3 ? kFar : random.between(0.5f, 4), .direction = up ? directionTo(to, from) : directionTo(from, to), .path = i});
+        rays.push_back({.origin = up ? from : to,
+                        .t_max = i % 3 ? kFar : random.between(0.5f, 4),
+                        .direction = up ? directionTo(to, from) : directionTo(from, to),
+                        .path = i});
     }
     const std::vector<gpu::vec3> arrived = visible(scene, rays, {1, 1, 1}, {0, 0, 0});
     uint32_t compared = 0, partial = 0;
@@ -424,7 +291,8 @@ TEST_F(Rays, CrossTranslucentLayersWithTheProductOfWhatEachLetsThrough)
             layers[triangles[m.slot].triangle] = &m;
         for (const auto& [triangle, m] : layers)
         {
-            const auto through = crossed(scene.package.materials()[triangles[m->slot].material], std::abs(double(rays[i].direction.z)));
+            const auto through =
+                crossed(scene.package.materials()[triangles[m->slot].material], std::abs(double(rays[i].direction.z)));
             for (size_t k = 0; k < 3; ++k)
                 product[k] *= through[k];
         }
@@ -467,19 +335,26 @@ TEST_F(Rays, MeetABlendedSurfaceAsOftenAsItsAlphaSays)
         const double p = probability[layer];
         constexpr double kSigmas = 5;
         for (const auto& found : {one, other})
-            EXPECT_NEAR(double(std::ranges::count(found, layer)), kCount * p, kSigmas * std::sqrt(kCount * p * (1 - p))) << layer;
+            EXPECT_NEAR(double(std::ranges::count(found, layer)), kCount * p, kSigmas * std::sqrt(kCount * p * (1 - p)))
+                << layer;
         equal_by_chance += p * p;
     }
     for (uint32_t i = 0; i < kCount; ++i)
         equal += one[i] == other[i];
-    EXPECT_NEAR(equal, kCount * equal_by_chance, 5 * std::sqrt(kCount * equal_by_chance * (1 - equal_by_chance))); // independent
+    EXPECT_NEAR(equal, kCount * equal_by_chance,
+                5 * std::sqrt(kCount * equal_by_chance * (1 - equal_by_chance))); // independent
 }
 
 // ---- Queues --------------------------------------------------------------------------------------------------------
 
 TEST_F(Rays, QueuesAreDispatchedInWholeGroups)
 {
-    const LoadedScene scene = [] { TriangleScene s; s.quad({0, 0, 0}, {1, 0, 0}, {0, 1, 0}); return s.load(device()); }();
+    const LoadedScene scene = []
+    {
+        TriangleScene s;
+        s.quad({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+        return s.load(device());
+    }();
     const RayStage stage(device(), *scene.gpu);
     for (const uint32_t count : {0u, 1u, 63u, 64u, 65u, 4095u, 4096u, 4097u, 1u << 24, (1u << 26) - 1})
     {
@@ -509,7 +384,8 @@ TEST_F(Rays, BeyondTheQueuesCountAreLeftAlone)
     const LoadedScene scene = builder.load(device());
     const RayStage stage(device(), *scene.gpu);
     constexpr uint32_t kCapacity = 200, kCount = 70; // ends within a group
-    const std::vector<gpu::Ray> rays(kCapacity, {.origin = {0.5f, 0.25f, 0}, .t_max = kFar, .direction = {0, 0, 1}, .path = 0});
+    const std::vector<gpu::Ray> rays(kCapacity,
+                                     {.origin = {0.5f, 0.25f, 0}, .t_max = kFar, .direction = {0, 0, 1}, .path = 0});
     RayQueue queue(device(), "test.queue", 1);
     queue.rays = device().upload<gpu::Ray>("test.rays", rays);
     const Buffer hits = device().array<gpu::Hit>("test.hits", kCapacity);

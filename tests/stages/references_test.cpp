@@ -4,6 +4,7 @@
 #include "compiler/compile.h"
 #include "runtime/renderer.h"
 #include "tests/stages/gpu_test.h"
+#include "tests/stages/mean_fresnel.h"
 #include "tests/tools/temporary_folder.h"
 #include "tools/compare/metrics.h"
 #include "tools/image/read_exr.h"
@@ -19,8 +20,8 @@ const std::filesystem::path kShared = LUMICUT_SHARED_DIR;
 
 struct Comparison
 {
-    std::string scene;     // below shared/scenes
-    std::string reference; // below shared/references
+    std::string scene;          // below shared/scenes
+    std::string reference;      // below shared/references
     uint32_t reference_samples; // a pixel
     uint32_t samples;           // ours, a pixel, both halves together
     bool lambert = false;       // take the specular layer off every material first
@@ -35,7 +36,10 @@ uint32_t wordAt(const std::string& bytes, size_t at)
     return word;
 }
 
-std::string wordBytes(uint32_t word) { return {reinterpret_cast<const char*>(&word), 4}; }
+std::string wordBytes(uint32_t word)
+{
+    return {reinterpret_cast<const char*>(&word), 4};
+}
 
 /// The same binary glTF with KHR_materials_specular on every material, all factors 0: what remains is Lambert.
 std::string withoutSpecular(const std::string& glb)
@@ -151,17 +155,17 @@ struct Outcome
 Outcome compareAndPrint(const Pictures& p, const Comparison& c, const std::string& what)
 {
     const Outcome o{.metrics = compareImages(p.reference, p.ours), .expected_relmse = expectedRelMse(p, c)};
-    fmt::print("{}, {}: mean ratio {:.4f} {:.4f} {:.4f}, bias z {:.2f}, relMSE {:.5f}, {:.5f} expected of noise\n", c.reference, what,
-               o.metrics.mean_ratio[0], o.metrics.mean_ratio[1], o.metrics.mean_ratio[2], o.metrics.bias_z, o.metrics.relmse,
-               o.expected_relmse);
+    fmt::print("{}, {}: mean ratio {:.4f} {:.4f} {:.4f}, bias z {:.2f}, relMSE {:.5f}, {:.5f} expected of noise\n",
+               c.reference, what, o.metrics.mean_ratio[0], o.metrics.mean_ratio[1], o.metrics.mean_ratio[2],
+               o.metrics.bias_z, o.metrics.relmse, o.expected_relmse);
     return o;
 }
 
-/// Means within 1 % of the reference's, and no more difference than noise makes: the estimates behind expected_relmse
-/// leave out what the reference's sampler does better or worse than ours, hence the factor.
+/// Means within 1 % of the reference's, and no more difference than noise makes. Rare bright samples raise both sides
+/// of that alike; what is left to guess is the reference's own noise, 6 % of all at most, hence the factor.
 void expectAgreement(const Outcome& o)
 {
-    constexpr double kMeanTolerance = 0.01, kNoiseFactor = 1.5;
+    constexpr double kMeanTolerance = 0.01, kNoiseFactor = 1.1;
     for (const double ratio : o.metrics.mean_ratio)
         EXPECT_NEAR(ratio, 1, kMeanTolerance);
     EXPECT_LE(o.metrics.relmse, kNoiseFactor * o.expected_relmse);
@@ -187,10 +191,22 @@ Opened openScene(const Device& device, const Comparison& c)
 // Where two surfaces that face each other coincide exactly, as the sides of neighbouring tiles do, Cycles shadows each
 // with the other; we do not. Pixels that show such surfaces are left out.
 
-struct Dvec { double x, y, z; };
-Dvec operator-(gpu::vec3 a, gpu::vec3 b) { return {double(a.x) - b.x, double(a.y) - b.y, double(a.z) - b.z}; }
-double dot(Dvec a, Dvec b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-Dvec cross(Dvec a, Dvec b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
+struct Dvec
+{
+    double x, y, z;
+};
+Dvec operator-(gpu::vec3 a, gpu::vec3 b)
+{
+    return {double(a.x) - b.x, double(a.y) - b.y, double(a.z) - b.z};
+}
+double dot(Dvec a, Dvec b)
+{
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+Dvec cross(Dvec a, Dvec b)
+{
+    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
 Dvec unitNormal(const gpu::BvhTriangle& t)
 {
     const Dvec n = cross(t.v1 - t.v0, t.v2 - t.v0);
@@ -201,12 +217,14 @@ Dvec unitNormal(const gpu::BvhTriangle& t)
 constexpr double kCoincident = 1e-4; // metres
 
 /// Triangles in the plane of `triangle`, facing the other way.
-std::vector<uint32_t> opposites(std::span<const gpu::BvhTriangle> triangles, std::span<const Dvec> normals, uint32_t triangle)
+std::vector<uint32_t> opposites(std::span<const gpu::BvhTriangle> triangles, std::span<const Dvec> normals,
+                                uint32_t triangle)
 {
     std::vector<uint32_t> found;
     const gpu::vec3 at = triangles[triangle].v0;
     for (uint32_t i = 0; i < triangles.size(); ++i)
-        if (dot(normals[i], normals[triangle]) < -0.9999 && std::abs(dot(triangles[i].v0 - at, normals[triangle])) < kCoincident)
+        if (dot(normals[i], normals[triangle]) < -0.9999 &&
+            std::abs(dot(triangles[i].v0 - at, normals[triangle])) < kCoincident)
             found.push_back(i);
     return found;
 }
@@ -228,7 +246,8 @@ struct FirstHits
     std::vector<gpu::Hit> hits;
 };
 
-FirstHits firstHits(const Device& device, const SceneGpu& scene, const Camera& camera, uint32_t width, uint32_t height, uint32_t samples)
+FirstHits firstHits(const Device& device, const SceneGpu& scene, const Camera& camera, uint32_t width, uint32_t height,
+                    uint32_t samples)
 {
     const uint32_t count = width * height * samples;
     const RayStage stage(device, scene);
@@ -298,13 +317,18 @@ protected:
 
 TEST_F(References, CornellBoxOfLambertSurfaces)
 {
-    expectAgreementWith({.scene = "truth/cornell.glb", .reference = "cornell_lambert_256_4096.exr", .reference_samples = 4096, .samples = 32});
+    expectAgreementWith({.scene = "truth/cornell.glb",
+                         .reference = "cornell_lambert_256_4096.exr",
+                         .reference_samples = 4096,
+                         .samples = 32});
 }
 
 TEST_F(References, CornellBoxWithGlassMirrorAndGlossyMetal)
 {
-    expectAgreementWith(
-        {.scene = "truth/cornell_caustic.glb", .reference = "cornell_caustic_gltf_256_2048.exr", .reference_samples = 2048, .samples = 32});
+    expectAgreementWith({.scene = "truth/cornell_caustic.glb",
+                         .reference = "cornell_caustic_gltf_256_2048.exr",
+                         .reference_samples = 2048,
+                         .samples = 32});
 }
 
 TEST_F(References, CornellBoxOfAnotherMaker)
@@ -316,31 +340,84 @@ TEST_F(References, CornellBoxOfAnotherMaker)
                          .lambert = true});
 }
 
-/// Renders the hall and compares the whole picture, then what is left without pixels on coincident surfaces.
-Outcome compareHall(const Device& device, const Comparison& c)
+/// What the stand-in for glTF's BRDF changes in a picture's direct light, pixel by pixel: stand-in minus glTF.
+std::vector<gpu::vec3> changeOfDirectLight(const Device& device, const Opened& opened, uint32_t width, uint32_t height)
 {
-    const Opened opened = openScene(device, c);
+    constexpr uint32_t kRaysPerPixel = 8;
+    const FirstHits first = firstHits(device, *opened.scene, opened.camera, width, height, kRaysPerPixel);
+    const DirectLightByBothModels direct_light(opened.package);
+    const RayStage stage(device, *opened.scene);
+    std::vector<gpu::vec3> change(size_t(width) * height);
+    for (const gpu::Light& light : opened.package.lights())
+    {
+        std::vector<gpu::ShadowRay> shadow_rays;
+        for (uint32_t i = 0; i < first.hits.size(); ++i)
+            if (first.hits[i].slot != gpu::kNone)
+                if (const auto lit = direct_light(first.rays[i], first.hits[i], light))
+                {
+                    const gpu::vec3 difference = lit->mean_fresnel + -1.0f * lit->gltf;
+                    shadow_rays.push_back({lit->shadow_ray, (1.0f / kRaysPerPixel) * difference});
+                    shadow_rays.back().ray.path = i;
+                }
+        const Buffer size = device.array<gpu::QueueSize>("test.size", 1);
+        const Buffer queue = device.upload<gpu::ShadowRay>("test.shadow_rays", shadow_rays);
+        const Buffer arrived = device.array<gpu::vec3>("test.arrived", first.hits.size());
+        Recorder rec(device);
+        rec.begin(opened.scene->descriptorSet());
+        rec.clear(arrived);
+        stage.resize(rec, size, uint32_t(shadow_rays.size()));
+        stage.visible(rec, size, queue, arrived);
+        rec.submitAndWait();
+        const auto values = device.download<gpu::vec3>(arrived, first.hits.size());
+        for (size_t i = 0; i < values.size(); ++i)
+            change[i % change.size()] = change[i % change.size()] + values[i];
+    }
+    return change;
+}
+
+struct Hall
+{
+    Opened opened;
+    Pictures pictures; // without pixels on coincident surfaces
+    std::vector<bool> left_out;
+};
+
+/// Renders the hall; prints what the whole picture gives.
+Hall renderHall(const Device& device, const Comparison& c)
+{
+    Opened opened = openScene(device, c);
     Pictures pictures = renderBoth(device, *opened.scene, opened.camera, c);
     compareAndPrint(pictures, c, "whole picture");
-    const std::vector<bool> left_out = coincidentPixels(device, opened, pictures.ours.width, pictures.ours.height);
+    std::vector<bool> left_out = coincidentPixels(device, opened, pictures.ours.width, pictures.ours.height);
     blacken(pictures, left_out);
-    return compareAndPrint(pictures, c, fmt::format("without {} pixels on coincident surfaces", std::ranges::count(left_out, true)));
+    return {.opened = std::move(opened), .pictures = std::move(pictures), .left_out = std::move(left_out)};
 }
 
 TEST_F(References, DungeonHallOfLambertSurfaces)
 {
-    expectAgreement(compareHall(device(), {.scene = "scenes/dungeon-hall-cc0.glb",
-                                           .reference = "dungeon_hall_lambert_320x180_1024.exr",
-                                           .reference_samples = 1024,
-                                           .samples = 32,
-                                           .lambert = true}));
+    const Comparison c{.scene = "scenes/dungeon-hall-cc0.glb",
+                       .reference = "dungeon_hall_lambert_320x180_1024.exr",
+                       .reference_samples = 1024,
+                       .samples = 32,
+                       .lambert = true};
+    const Hall hall = renderHall(device(), c);
+    expectAgreement(compareAndPrint(hall.pictures, c, "without coincident surfaces"));
 }
 
 TEST_F(References, DungeonHall)
 {
-    expectAgreement(compareHall(device(), {.scene = "scenes/dungeon-hall-cc0.glb",
-                                           .reference = "dungeon_hall_gltf_320x180_512.exr",
-                                           .reference_samples = 512,
-                                           .samples = 32}));
+    const Comparison c{.scene = "scenes/dungeon-hall-cc0.glb",
+                       .reference = "dungeon_hall_gltf_320x180_512.exr",
+                       .reference_samples = 512,
+                       .samples = 32};
+    Hall hall = renderHall(device(), c);
+    compareAndPrint(hall.pictures, c, "without coincident surfaces");
+    const ImageF& ours = hall.pictures.ours;
+    const auto change = changeOfDirectLight(device(), hall.opened, ours.width, ours.height);
+    for (size_t i = 0; i < change.size(); ++i)
+        if (!hall.left_out[i])
+            for (size_t k = 0; k < 3; ++k)
+                hall.pictures.ours.rgb[3 * i + k] += k == 0 ? change[i].x : k == 1 ? change[i].y : change[i].z;
+    expectAgreement(compareAndPrint(hall.pictures, c, "and with Cycles' stand-in for the BRDF in the direct light"));
 }
 } // namespace

@@ -24,18 +24,20 @@ protected:
     }
 
     /// The bytes of `radiance` by way of one accumulated sample a pixel, four a pixel.
-    static std::vector<uint8_t> displayed(const std::vector<gpu::vec3>& radiance, float exposure, Tonemap tonemap, bool bgra)
+    static std::vector<uint8_t> displayed(const std::vector<gpu::vec3>& radiance, float exposure, Tonemap tonemap,
+                                          bool bgra)
     {
         const uint32_t count = uint32_t(radiance.size());
         ResolveStage stage(device(), count);
         const Buffer input = device().upload<gpu::vec3>("test.radiance", radiance);
         const Buffer* pixels = nullptr;
-        submit([&](Recorder& rec)
-        {
-            stage.restart(rec);
-            stage.accumulate(rec, input, count, 1);
-            pixels = &stage.display(rec, count, exposure, tonemap, bgra);
-        });
+        submit(
+            [&](Recorder& rec)
+            {
+                stage.restart(rec);
+                stage.accumulate(rec, input, count, 1);
+                pixels = &stage.display(rec, count, exposure, tonemap, bgra);
+            });
         return device().download<uint8_t>(*pixels, 4 * count);
     }
 };
@@ -52,12 +54,13 @@ TEST_F(Resolve, SumsAHundredThousandSamplesWithoutLosingThem)
             radiance.push_back({value(p), 10 * value(p), -value(p)});
     ResolveStage stage(device(), kPixels);
     const Buffer input = device().upload<gpu::vec3>("test.radiance", radiance);
-    submit([&](Recorder& rec)
-    {
-        stage.restart(rec);
-        for (uint32_t pass = 0; pass < kPasses; ++pass)
-            stage.accumulate(rec, input, kPixels, kSamplesPerPass);
-    });
+    submit(
+        [&](Recorder& rec)
+        {
+            stage.restart(rec);
+            for (uint32_t pass = 0; pass < kPasses; ++pass)
+                stage.accumulate(rec, input, kPixels, kSamplesPerPass);
+        });
     constexpr uint32_t kSamples = kSamplesPerPass * kPasses;
     EXPECT_EQ(stage.sampleCount(), kSamples);
     float naive = 0;
@@ -83,7 +86,12 @@ TEST_F(Resolve, KeepsSmallSamplesBesideLargeOnes)
     radiance[0] = {0x1p24f, 0x1p26f, 0}; // 0.25 is below half their ulp
     ResolveStage stage(device(), 1);
     const Buffer input = device().upload<gpu::vec3>("test.radiance", radiance);
-    submit([&](Recorder& rec) { stage.restart(rec); stage.accumulate(rec, input, 1, kSmall + 1); });
+    submit(
+        [&](Recorder& rec)
+        {
+            stage.restart(rec);
+            stage.accumulate(rec, input, 1, kSmall + 1);
+        });
     const auto sum = device().download<gpu::vec3>(stage.sum(), 1)[0];
     EXPECT_EQ(sum.x, 0x1p24f + 0.25f * kSmall);
     EXPECT_EQ(sum.y, 0x1p26f + 0.25f * kSmall);
@@ -109,12 +117,13 @@ TEST_F(Resolve, LeavesOutSamplesThatAreNotFiniteAndCountsThem)
     const Buffer input = device().upload<gpu::vec3>("test.radiance", radiance);
     const auto expectTwoPasses = [&]
     {
-        submit([&](Recorder& rec)
-        {
-            stage.restart(rec); // also forgets what is there already
-            stage.accumulate(rec, input, kPixels, kSamples);
-            stage.accumulate(rec, input, kPixels, kSamples);
-        });
+        submit(
+            [&](Recorder& rec)
+            {
+                stage.restart(rec); // also forgets what is there already
+                stage.accumulate(rec, input, kPixels, kSamples);
+                stage.accumulate(rec, input, kPixels, kSamples);
+            });
         EXPECT_EQ(device().download<uint32_t>(stage.nonFiniteCount(), 1)[0], 2 * bad_count);
         const auto sum = device().download<gpu::vec3>(stage.sum(), kPixels);
         for (uint32_t p = 0; p < kPixels; ++p)
@@ -130,10 +139,16 @@ TEST_F(Resolve, LeavesOutSamplesThatAreNotFiniteAndCountsThem)
 
 // ---- Display -------------------------------------------------------------------------------------------------------
 
-double clamp01(double x) { return std::min(std::max(x, 0.0), 1.0); }
+double clamp01(double x)
+{
+    return std::min(std::max(x, 0.0), 1.0);
+}
 
 /// IEC 61966-2-1.
-double srgbEncoded(double x) { return x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055; }
+double srgbEncoded(double x)
+{
+    return x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055;
+}
 
 Rgb multiply(const std::array<Rgb, 3>& rows, const Rgb& v)
 {
@@ -201,13 +216,16 @@ std::vector<gpu::vec3> testColors()
     for (int i = -60; i <= 50; ++i)
     {
         const float x = std::exp2(float(i) / 4);
-        for (const gpu::vec3& hue : {gpu::vec3{1, 1, 1}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0.5f, 0.1f}, {0.2f, 0.9f, 0.7f}})
+        for (const gpu::vec3& hue :
+             {gpu::vec3{1, 1, 1}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0.5f, 0.1f}, {0.2f, 0.9f, 0.7f}})
             colors.push_back({x * hue.x, x * hue.y, x * hue.z});
     }
     return colors;
 }
 
-class Curves : public Resolve, public testing::WithParamInterface<Tonemap> {};
+class Curves : public Resolve, public testing::WithParamInterface<Tonemap>
+{
+};
 
 TEST_P(Curves, AreTheirFormulasToAByte)
 {
@@ -221,7 +239,8 @@ TEST_P(Curves, AreTheirFormulasToAByte)
             const Rgb expected = curveOf(GetParam(), {scale * colors[i].x, scale * colors[i].y, scale * colors[i].z});
             for (size_t k = 0; k < 3; ++k)
                 EXPECT_LE(std::abs(bytes[4 * i + k] - 255 * srgbEncoded(expected[k])), 0.51) // rounded to the nearest
-                    << colors[i].x << " " << colors[i].y << " " << colors[i].z << " at " << exposure << " stops, channel " << k;
+                    << colors[i].x << " " << colors[i].y << " " << colors[i].z << " at " << exposure
+                    << " stops, channel " << k;
             EXPECT_EQ(bytes[4 * i + 3], 255);
         }
     }
@@ -249,7 +268,8 @@ TEST_P(Curves, RiseWithGreyAndKeepItGrey)
 TEST_P(Curves, SwapRedAndBlueForBgra)
 {
     const std::vector<gpu::vec3> colors = testColors();
-    const std::vector<uint8_t> rgba = displayed(colors, 0, GetParam(), false), bgra = displayed(colors, 0, GetParam(), true);
+    const std::vector<uint8_t> rgba = displayed(colors, 0, GetParam(), false),
+                               bgra = displayed(colors, 0, GetParam(), true);
     for (size_t i = 0; i < rgba.size(); i += 4)
     {
         EXPECT_EQ(rgba[i], bgra[i + 2]);
@@ -260,8 +280,11 @@ TEST_P(Curves, SwapRedAndBlueForBgra)
 }
 
 INSTANTIATE_TEST_SUITE_P(, Curves, testing::Values(Tonemap::kSrgb, Tonemap::kAces, Tonemap::kAgx),
-                         [](const auto& curve)
-                         { return curve.param == Tonemap::kSrgb ? "Srgb" : curve.param == Tonemap::kAces ? "Aces" : "Agx"; });
+                         [](const auto& curve) {
+                             return curve.param == Tonemap::kSrgb   ? "Srgb"
+                                    : curve.param == Tonemap::kAces ? "Aces"
+                                                                    : "Agx";
+                         });
 
 TEST_F(Resolve, DisplaysTheMeanOfTheSamples)
 {
@@ -272,12 +295,13 @@ TEST_F(Resolve, DisplaysTheMeanOfTheSamples)
     ResolveStage stage(device(), 1);
     const Buffer input = device().upload<gpu::vec3>("test.radiance", radiance);
     const Buffer* pixels = nullptr;
-    submit([&](Recorder& rec)
-    {
-        stage.restart(rec);
-        stage.accumulate(rec, input, 1, kSamples);
-        pixels = &stage.display(rec, 1, 0, Tonemap::kSrgb, false);
-    });
+    submit(
+        [&](Recorder& rec)
+        {
+            stage.restart(rec);
+            stage.accumulate(rec, input, 1, kSamples);
+            pixels = &stage.display(rec, 1, 0, Tonemap::kSrgb, false);
+        });
     const auto bytes = device().download<uint8_t>(*pixels, 4);
     const Rgb mean{double(kSamples - 1) / (2 * kSamples), 0.5, 0.1 * (kSamples - 1) / 2};
     for (size_t k = 0; k < 3; ++k)

@@ -82,7 +82,8 @@ void TriangleScene::quad(gpu::vec3 corner, gpu::vec3 u, gpu::vec3 v, uint32_t ma
 
 void TriangleScene::box(gpu::vec3 low, gpu::vec3 high, uint32_t n)
 {
-    const auto at = [&](uint32_t i, float from, float to) { return i == n ? to : from + (to - from) * float(i) / float(n); };
+    const auto at = [&](uint32_t i, float from, float to)
+    { return i == n ? to : from + (to - from) * float(i) / float(n); };
     const std::array<float, 3> from{low.x, low.y, low.z}, to{high.x, high.y, high.z};
     for (size_t axis = 0; axis < 3; ++axis)
         for (const bool upper : {false, true})
@@ -111,7 +112,8 @@ void TriangleScene::sphere(gpu::vec3 center, float radius, uint32_t n)
     {
         const double theta = std::numbers::pi * i / n, phi = std::numbers::pi * (k % (2 * n)) / n;
         const double rim = i % n == 0 ? 0 : std::sin(theta); // the poles are one point each
-        return center + gpu::vec3{float(rim * std::cos(phi)), float(std::cos(theta)), float(rim * std::sin(phi))} * radius;
+        return center +
+               gpu::vec3{float(rim * std::cos(phi)), float(std::cos(theta)), float(rim * std::sin(phi))} * radius;
     };
     for (uint32_t i = 0; i < n; ++i)
         for (uint32_t k = 0; k < 2 * n; ++k)

@@ -1,0 +1,153 @@
+// The frame as a whole: equal input gives equal bits, and how samples are batched does not show.
+#include "tests/stages/gpu_test.h"
+#include "tests/stages/scene_builder.h"
+
+#include <cmath>
+#include <cstring>
+
+namespace
+{
+constexpr uint32_t kWidth = 48, kHeight = 40;
+
+/// A room with a lamp, a mirror, glossy metal and glass; `translucent` adds a blended sheet, met by chance.
+std::filesystem::path room(SceneBuilder& scene, bool translucent)
+{
+    const auto metal = [](double roughness)
+    {
+        return nlohmann::json{
+            {"pbrMetallicRoughness", {{"baseColorFactor", {0.9, 0.6, 0.3, 1}}, {"roughnessFactor", roughness}}}};
+    };
+    scene.box({-1, 0, -1}, {1, 2, 1}, scene.material(lambert(0.6)), true);
+    scene.quad({-0.3f, 1.99f, -0.3f}, {0.6f, 0, 0}, {0, 0, 0.6f}, scene.material(emitter(8)));
+    scene.sphere({-0.5f, 0.4f, -0.3f}, 0.3f, 12, true, scene.material(metal(0)));
+    scene.sphere({0.5f, 0.4f, -0.3f}, 0.3f, 12, true, scene.material(metal(0.4)));
+    scene.sphere({0, 0.9f, 0}, 0.25f, 12, true,
+                 scene.material({{"pbrMetallicRoughness", {{"metallicFactor", 0}, {"roughnessFactor", 0}}},
+                                 {"extensions",
+                                  {{"KHR_materials_transmission", {{"transmissionFactor", 1}}},
+                                   {"KHR_materials_volume", {{"thicknessFactor", 0.5}}}}}}));
+    if (translucent)
+        scene.quad({-0.8f, 0.3f, 0.4f}, {1.6f, 0, 0}, {0, 1, 0},
+                   scene.material(
+                       with(lambert(0.5), {{"alphaMode", "BLEND"},
+                                           {"pbrMetallicRoughness", {{"baseColorFactor", {0.2, 0.4, 0.8, 0.4}}}}})));
+    return scene.compile();
+}
+
+const Camera kCamera{.name = "",
+                     .position = {0, 1, 0.95f},
+                     .forward = {0, 0, -1},
+                     .up = {0, 1, 0},
+                     .vertical_fov = 1.2f,
+                     .orthographic_height = 0};
+
+bool equalBits(const std::vector<gpu::vec3>& a, const std::vector<gpu::vec3>& b)
+{
+    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(gpu::vec3)) == 0;
+}
+
+class RendererTest : public GpuTest, public testing::WithParamInterface<Mode>
+{
+};
+
+TEST_P(RendererTest, GivesTheSameBitsForTheSameSeedAndOthersForAnother)
+{
+    SceneBuilder builder;
+    const auto scene = load(room(builder, true));
+    const auto picture = [&](uint32_t seed)
+    { return render(*scene, kCamera, Settings(), 4, kWidth, kHeight, GetParam(), seed).pixels; };
+    const auto first = picture(1);
+    EXPECT_TRUE(equalBits(first, picture(1)));
+    EXPECT_FALSE(equalBits(first, picture(2)));
+}
+
+TEST_P(RendererTest, StartsAnewWithTheCameraWithTheSeedAndWhenAsked)
+{
+    SceneBuilder builder;
+    const auto scene = load(room(builder, true));
+    Renderer renderer(device(), *scene, GetParam(), kWidth, kHeight);
+    Recorder rec(device());
+    const auto record = [&](const Camera& camera, uint32_t seed)
+    {
+        rec.begin(scene->descriptorSet());
+        renderer.record(rec, camera, Settings(), seed);
+        rec.submitAndWait();
+        return renderer.picture(device());
+    };
+    const auto first = record(kCamera, 1), two_samples = record(kCamera, 1);
+    EXPECT_EQ(renderer.sampleCount(), 2u);
+    EXPECT_FALSE(equalBits(first, two_samples));
+    Camera moved = kCamera;
+    moved.position.x += 0.1f;
+    (void)record(moved, 1);
+    EXPECT_EQ(renderer.sampleCount(), 1u);
+    EXPECT_TRUE(equalBits(first, record(kCamera, 1)));
+    EXPECT_EQ(renderer.sampleCount(), 1u);
+    (void)record(kCamera, 2);
+    EXPECT_EQ(renderer.sampleCount(), 1u);
+    (void)record(kCamera, 1);
+    renderer.restart();
+    EXPECT_TRUE(equalBits(first, record(kCamera, 1)));
+    EXPECT_EQ(renderer.sampleCount(), 1u);
+}
+
+INSTANTIATE_TEST_SUITE_P(, RendererTest, testing::Values(Mode::kDirect, Mode::kReference),
+                         [](const auto& mode) { return mode.param == Mode::kDirect ? "Direct" : "Reference"; });
+
+class Batches : public GpuTest
+{
+protected:
+    /// Sums of `sample_count` samples a pixel by the reference stage, `batch` at a time.
+    static std::vector<gpu::vec3> sums(const SceneGpu& scene, uint32_t sample_count, uint32_t batch)
+    {
+        constexpr uint32_t kPixels = kWidth * kHeight;
+        const RayStage rays(device(), scene);
+        const ReferenceStage reference(device(), scene, kPixels, batch);
+        ResolveStage resolve(device(), kPixels);
+        gpu::CameraParams view = cameraParams(kCamera, kWidth, kHeight);
+        view.sample_count = batch;
+        Recorder rec(device());
+        for (view.first_sample = 0; view.first_sample < sample_count; view.first_sample += batch)
+        {
+            rec.begin(scene.descriptorSet());
+            if (view.first_sample == 0)
+                resolve.restart(rec);
+            resolve.accumulate(rec, reference.record(rec, rays, {.camera = view, .depth_limit = 16}), kPixels, batch);
+            rec.submitAndWait();
+        }
+        return device().download<gpu::vec3>(resolve.sum(), kPixels);
+    }
+};
+
+TEST_F(Batches, OfAnySizeGiveTheSameBitsWithoutTranslucency)
+{
+    SceneBuilder builder;
+    const auto scene = load(room(builder, false));
+    const auto one_by_one = sums(*scene, 12, 1);
+    for (const uint32_t batch : {2u, 3u, 12u})
+        EXPECT_TRUE(equalBits(one_by_one, sums(*scene, 12, batch))) << batch;
+}
+
+TEST_F(Batches, OfAnySizeAgreeStatisticallyWithTranslucency)
+{
+    // Blended surfaces are met by other random numbers in another batch: sums differ, but by noise alone.
+    SceneBuilder builder;
+    const auto scene = load(room(builder, true));
+    const auto one_by_one = sums(*scene, 48, 1);
+    for (const uint32_t batch : {4u, 16u})
+    {
+        const auto batched = sums(*scene, 48, batch);
+        EXPECT_FALSE(equalBits(one_by_one, batched));
+        double mean = 0, square_mean = 0;
+        const double count = double(batched.size());
+        for (size_t i = 0; i < batched.size(); ++i)
+        {
+            const double difference = double(batched[i].x) - one_by_one[i].x;
+            mean += difference / count;
+            square_mean += difference * difference / count;
+        }
+        constexpr double kSigmas = 4.5;
+        EXPECT_LE(std::abs(mean), kSigmas * std::sqrt((square_mean - mean * mean) / count)) << batch;
+    }
+}
+} // namespace
