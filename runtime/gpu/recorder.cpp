@@ -5,7 +5,7 @@
 
 namespace
 {
-constexpr uint32_t kMaxTimestamps = 2048;
+constexpr uint32_t kMaxTimestamps = 8192; // the reference at its greatest depth takes 6 a vertex
 }
 
 Recorder::Recorder(const Device& device) : device_(device)
