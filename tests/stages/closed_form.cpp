@@ -6,7 +6,10 @@ namespace
 {
 constexpr std::array<const char*, 3> kChannels{"red", "green", "blue"};
 
-const char* modeName(Mode mode) { return mode == Mode::kReference ? "reference" : "direct"; }
+const char* modeName(Mode mode)
+{
+    return mode == Mode::kReference ? "reference" : "direct";
+}
 } // namespace
 
 Camera viewOf(gpu::vec3 point, gpu::vec3 towards_viewer, float distance, float size)
@@ -53,8 +56,8 @@ Estimate ClosedForm::measure(const std::string& what, const SceneGpu& scene, con
     return got;
 }
 
-void ClosedForm::expect(const std::string& what, const SceneGpu& scene, const Camera& camera, Mode mode, const Rgb& want,
-                        const Sampling& sampling)
+void ClosedForm::expect(const std::string& what, const SceneGpu& scene, const Camera& camera, Mode mode,
+                        const Rgb& want, const Sampling& sampling)
 {
     const Settings settings{.reference_depth = sampling.depth};
     const Picture picture = render(scene, camera, settings, sampling.sample_count, sampling.side, sampling.side, mode);
@@ -70,8 +73,8 @@ void ClosedForm::expect(const std::string& what, const SceneGpu& scene, const Ca
         }
         const double relative = got.mean[c] / want[c] - 1;
         const double standard_error = got.standard_error[c] / want[c];
-        fmt::print("  {}: got {:.6g} want {:.6g} rel {:+.3f} % (standard error {:.3f} %)\n", where, got.mean[c], want[c],
-                   100 * relative, 100 * standard_error);
+        fmt::print("  {}: got {:.6g} want {:.6g} rel {:+.3f} % (standard error {:.3f} %)\n", where, got.mean[c],
+                   want[c], 100 * relative, 100 * standard_error);
         EXPECT_LE(std::abs(relative), kTolerance) << where << ": got " << got.mean[c] << " want " << want[c];
         EXPECT_LT(standard_error, kLargestStandardError) << where << ": too few samples to tell";
     }

@@ -10,7 +10,10 @@ using Rgb = std::array<double, 3>;
 inline constexpr double kPi = std::numbers::pi;
 inline constexpr double kDegree = kPi / 180;
 
-constexpr Rgb grey(double value) { return {value, value, value}; }
+constexpr Rgb grey(double value)
+{
+    return {value, value, value};
+}
 
 /// Parallel rays onto a square of `size` metres about `point`, which the viewer sees from `towards_viewer`,
 /// `distance` metres away.

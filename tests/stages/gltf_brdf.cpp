@@ -10,7 +10,10 @@ constexpr double kPi = std::numbers::pi;
 using Vector = std::array<double, 3>;
 using Rgb = std::array<double, 3>;
 
-double dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+double dot(const Vector& a, const Vector& b)
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
 
 Vector halfway(const Vector& a, const Vector& b)
 {
@@ -90,7 +93,8 @@ Rgb directionalAlbedo(const GltfMaterial& material, double cosine)
                 sum[c] += below.diffuse[c];
             if (alpha == 0)
                 continue;
-            // Specular part: microfacet normals, equal steps of D cos. What remains of the integrand is F G V.H/(N.V N.H).
+            // Specular part: microfacet normals, equal steps of D cos. What remains of the integrand is F G V.H/(N.V
+            // N.H).
             const double tangent2 = alpha * alpha * u / (1 - u);
             const double h_z = 1 / std::sqrt(1 + tangent2), h_r = std::sqrt(1 - h_z * h_z);
             const Vector h{h_r * std::cos(phi), h_r * std::sin(phi), h_z};

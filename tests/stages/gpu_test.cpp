@@ -37,7 +37,10 @@ void GpuTest::SetUp()
     ASSERT_TRUE(openedDevice()) << openedDevice().error().message;
 }
 
-const Device& GpuTest::device() { return **openedDevice(); }
+const Device& GpuTest::device()
+{
+    return **openedDevice();
+}
 
 std::unique_ptr<SceneGpu> GpuTest::load(const std::filesystem::path& path)
 {
@@ -52,7 +55,8 @@ std::unique_ptr<SceneGpu> GpuTest::load(const std::filesystem::path& path)
 Renderer& GpuTest::rendererFor(const SceneGpu& scene, Mode mode, uint32_t width, uint32_t height)
 {
     for (const auto& kept : kept_)
-        if (kept->scene == &scene && kept->mode == mode && kept->renderer.width() == width && kept->renderer.height() == height)
+        if (kept->scene == &scene && kept->mode == mode && kept->renderer.width() == width &&
+            kept->renderer.height() == height)
         {
             kept->renderer.restart();
             return kept->renderer;

@@ -1,5 +1,5 @@
-// The fixture of tests that run on a Vulkan device, opened once and with the validation layers: a message of theirs ends
-// the test program. Where there is no device the tests fail; they are never skipped.
+// The fixture of tests that run on a Vulkan device, opened once and with the validation layers: a message of theirs
+// ends the test program. Where there is no device the tests fail; they are never skipped.
 #pragma once
 #include "runtime/renderer.h"
 

@@ -21,7 +21,10 @@ struct LitFloor
 
 const nlohmann::json kDownwards = {-std::sqrt(0.5), 0, 0, std::sqrt(0.5)}; // turns -Z, the way lights shine, to -Y
 
-Rgb reflected(double irradiance) { return grey(kAlbedo / kPi * irradiance); }
+Rgb reflected(double irradiance)
+{
+    return grey(kAlbedo / kPi * irradiance);
+}
 
 TEST_F(ClosedForm, PointLightFallsOffWithTheSquareOfDistanceAndTheCosine)
 {
@@ -59,14 +62,16 @@ TEST_F(ClosedForm, SeveralLightsAddUp)
     floor.builder.light({{"type", "directional"}, {"intensity", 3}}, {{"rotation", kDownwards}});
     const auto scene = load(floor.builder.compile());
     const double irradiance = 25 + 50 * 2 / std::pow(5, 1.5) + 3;
-    expectBoth("three lights", *scene, viewOf({0, 0, 0}, {0, 1, 0}), reflected(irradiance), {.side = 16, .sample_count = 256});
+    expectBoth("three lights", *scene, viewOf({0, 0, 0}, {0, 1, 0}), reflected(irradiance),
+               {.side = 16, .sample_count = 256});
 }
 
 TEST_F(ClosedForm, SpotLightFadesFromInnerToOuterConeAsGltfSays)
 {
     constexpr double kInner = 0.3, kOuter = 0.6;
-    LitFloor floor({{"type", "spot"}, {"intensity", 100}, {"spot", {{"innerConeAngle", kInner}, {"outerConeAngle", kOuter}}}},
-                   {{"translation", {0, 2, 0}}, {"rotation", kDownwards}});
+    LitFloor floor(
+        {{"type", "spot"}, {"intensity", 100}, {"spot", {{"innerConeAngle", kInner}, {"outerConeAngle", kOuter}}}},
+        {{"translation", {0, 2, 0}}, {"rotation", kDownwards}});
     const auto scene = load(floor.builder.compile());
     for (const double angle : {0.0, 0.2, 0.29, 0.35, 0.45, 0.55, 0.62, 1.2})
     {
@@ -75,8 +80,8 @@ TEST_F(ClosedForm, SpotLightFadesFromInnerToOuterConeAsGltfSays)
         const double scale = 1 / std::max(0.001, std::cos(kInner) - std::cos(kOuter));
         const double fade = std::clamp(cosine * scale - std::cos(kOuter) * scale, 0.0, 1.0);
         const double irradiance = 100 * fade * fade * cosine * cosine * cosine / 4;
-        expectBoth(fmt::format("{} rad off axis", angle), *scene, viewOf({0, 0, float(2 * std::tan(angle))}, {0.3f, 1, 0.2f}),
-                   reflected(irradiance), {});
+        expectBoth(fmt::format("{} rad off axis", angle), *scene,
+                   viewOf({0, 0, float(2 * std::tan(angle))}, {0.3f, 1, 0.2f}), reflected(irradiance), {});
     }
 }
 
@@ -99,7 +104,8 @@ TEST_F(ClosedForm, DirectionalLightGivesItsIlluminanceTimesTheCosine)
     for (const double angle : {0.0, 60 * kDegree})
     {
         const double half = (angle - kPi / 2) / 2; // about X: -Z to straight down, then tilted by `angle`
-        LitFloor floor({{"type", "directional"}, {"intensity", 10}}, {{"rotation", {std::sin(half), 0, 0, std::cos(half)}}});
+        LitFloor floor({{"type", "directional"}, {"intensity", 10}},
+                       {{"rotation", {std::sin(half), 0, 0, std::cos(half)}}});
         const auto scene = load(floor.builder.compile());
         expectBoth(fmt::format("{:.0f} degrees", angle / kDegree), *scene, viewOf({0.5f, 0, 0.5f}, {0, 1, 0}),
                    reflected(10 * std::cos(angle)), {});

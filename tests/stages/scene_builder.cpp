@@ -19,12 +19,18 @@ struct SceneBuilder::State
     bool has_environment = false;
 };
 
-SceneBuilder::SceneBuilder() : state_(std::make_unique<State>()) { state_->gltf.json["scenes"][0]["nodes"].clear(); }
+SceneBuilder::SceneBuilder() : state_(std::make_unique<State>())
+{
+    state_->gltf.json["scenes"][0]["nodes"].clear();
+}
 SceneBuilder::~SceneBuilder() = default;
 
 namespace
 {
-void addRoot(nlohmann::json& gltf, int node) { gltf["scenes"][0]["nodes"].push_back(node); }
+void addRoot(nlohmann::json& gltf, int node)
+{
+    gltf["scenes"][0]["nodes"].push_back(node);
+}
 
 std::vector<float> flattened(const std::vector<gpu::vec3>& vectors)
 {
@@ -53,18 +59,22 @@ int SceneBuilder::texture(uint32_t width, uint32_t height, const std::vector<uin
     return state_->gltf.texture(width, height, rgba);
 }
 
-void SceneBuilder::mesh(const std::vector<gpu::vec3>& positions, const std::vector<gpu::vec3>& normals, int material)
+void SceneBuilder::mesh(const std::vector<gpu::vec3>& positions, const std::vector<gpu::vec3>& normals,
+                        const std::vector<float>& uv, int material)
 {
     GltfBuilder& gltf = state_->gltf;
-    const nlohmann::json attributes = {{"POSITION", gltf.positions(flattened(positions))},
-                                       {"NORMAL", gltf.positions(flattened(normals))}};
+    nlohmann::json attributes = {{"POSITION", gltf.positions(flattened(positions))},
+                                 {"NORMAL", gltf.positions(flattened(normals))}};
+    if (!uv.empty())
+        attributes["TEXCOORD_0"] = gltf.accessor(uv, "VEC2", 5126, uv.size() / 2);
     addRoot(gltf.json, gltf.node({{"mesh", gltf.mesh({{"attributes", attributes}, {"material", material}})}}));
 }
 
 void SceneBuilder::quad(gpu::vec3 corner, gpu::vec3 edge_u, gpu::vec3 edge_v, int material)
 {
     const gpu::vec3 b = corner + edge_u, c = corner + edge_u + edge_v, d = corner + edge_v;
-    mesh({corner, b, c, corner, c, d}, std::vector<gpu::vec3>(6, normalizeOr(cross(edge_u, edge_v), {0, 1, 0})), material);
+    const std::vector<gpu::vec3> normals(6, normalizeOr(cross(edge_u, edge_v), {0, 1, 0}));
+    mesh({corner, b, c, corner, c, d}, normals, {0, 0, 1, 0, 1, 1, 0, 0, 1, 1, 0, 1}, material);
 }
 
 void SceneBuilder::floor(float side, float height, int material)
@@ -110,7 +120,7 @@ void SceneBuilder::sphere(gpu::vec3 center, float radius, int n, bool smooth, in
             if (i + 1 < n)
                 triangle({direction(i + 1, k), direction(i + 1, k + 1), direction(i, k + 1)});
         }
-    mesh(positions, normals, material);
+    mesh(positions, normals, {}, material);
 }
 
 void SceneBuilder::light(const nlohmann::json& light, const nlohmann::json& node, const nlohmann::json& parent)

@@ -19,10 +19,11 @@ public:
 
     /// A glTF material as it stands in the file. @return its index
     int material(const nlohmann::json& material);
-    /// A glTF texture of RGBA bytes (sRGB colour). @return its index
+    /// A glTF texture of RGBA bytes (sRGB colour), repeated and bilinearly filtered. @return its index
     int texture(uint32_t width, uint32_t height, const std::vector<uint8_t>& rgba);
 
     /// A parallelogram of two triangles in world space; its front is where cross(edge_u, edge_v) points.
+    /// TEXCOORD_0 runs from 0 to 1 along both edges.
     void quad(gpu::vec3 corner, gpu::vec3 edge_u, gpu::vec3 edge_v, int material);
     /// A horizontal square of `side` metres about (0, height, 0), facing up.
     void floor(float side, float height, int material);
@@ -42,7 +43,8 @@ public:
     std::filesystem::path compile();
 
 private:
-    void mesh(const std::vector<gpu::vec3>& positions, const std::vector<gpu::vec3>& normals, int material);
+    void mesh(const std::vector<gpu::vec3>& positions, const std::vector<gpu::vec3>& normals,
+              const std::vector<float>& uv, int material);
     void noteExtensions(const nlohmann::json& object);
     struct State;
     std::unique_ptr<State> state_;
