@@ -35,7 +35,7 @@ Status playHeadless(const PlayerOptions& options)
         return opened.error();
     if (const Status status = Renderer::checkSize(*opened->device, options.width, options.height); !status)
         return status;
-    Renderer renderer(*opened->device, *opened->scene, options.mode, options.width, options.height);
+    Renderer renderer(*opened->device, *opened->scene, options.mode, options.width, options.height, options.settings);
     statistics.pipeline_ms = opened->device->pipelineMs();
     renderSamples(options, renderer, *opened, statistics);
     return writeResults(options, *opened, renderer, statistics);

@@ -72,7 +72,7 @@ int main(int argc, char** argv)
         ->check(CLI::Range(1u, UINT32_MAX));
     app.add_option("--spp", options.sample_count, "samples a pixel to render")->check(CLI::Range(1u, UINT32_MAX));
     app.add_option("--output", options.output, "picture to write at the end: .exr (linear) or .png");
-    app.add_option("--mode", mode, "direct or reference")->check(CLI::IsMember({"direct", "reference"}))->capture_default_str();
+    app.add_option("--mode", mode, "gi, direct or reference")->check(CLI::IsMember({"gi", "direct", "reference"}))->capture_default_str();
     app.add_option("--camera", options.camera, "camera by name or index; default the first");
     app.add_option("--seed", options.seed, "seed of all random numbers")->capture_default_str();
     app.add_option("--device", options.device, "index, part of a name, or cpu; default the best suitable one");
@@ -95,7 +95,7 @@ int main(int argc, char** argv)
         return listDevices(options.validation);
     if (options.package.empty())
         return fail("lumicut-play", {ExitCode::kUsage, "a package is needed: lumicut-play scene.lumi (see --help)"});
-    options.mode = mode == "reference" ? Mode::kReference : Mode::kDirect;
+    options.mode = mode == "gi" ? Mode::kGi : mode == "reference" ? Mode::kReference : Mode::kDirect;
     Status status = parseSize(size, options);
     for (const std::string& assignment : assignments)
         if (status)

@@ -30,12 +30,14 @@ Status Renderer::checkSize(const Device& device, uint32_t width, uint32_t height
                                                 device.name(), double(most) * 1e-6)};
 }
 
-Renderer::Renderer(const Device& device, const SceneGpu& scene, Mode mode, uint32_t width, uint32_t height)
+Renderer::Renderer(const Device& device, const SceneGpu& scene, Mode mode, uint32_t width, uint32_t height, const Settings& settings)
     : width_(width), height_(height), max_batch_(mode == Mode::kReference ? batchFor(device, width * height) : 1),
       rays_(device, scene), resolve_(device, width * height)
 {
     if (mode == Mode::kReference)
         reference_.emplace(device, scene, width * height, max_batch_);
+    else if (mode == Mode::kGi)
+        gi_.emplace(device, scene, settings, width, height);
     else
     {
         primary_.emplace(device, scene, width * height);
@@ -59,6 +61,11 @@ void Renderer::record(Recorder& rec, const Camera& camera, const Settings& setti
     {
         const Buffer& radiance = reference_->record(rec, rays_, {.camera = view, .depth_limit = settings.reference_depth});
         resolve_.accumulate(rec, radiance, pixel_count, sample_count);
+        return;
+    }
+    if (gi_)
+    {
+        resolve_.accumulate(rec, gi_->record(rec, rays_, view, settings), pixel_count, 1);
         return;
     }
     const auto primary = primary_->record(rec, rays_, {.camera = view, .specular_depth = settings.specular_depth});

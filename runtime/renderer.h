@@ -1,6 +1,7 @@
 // The frame: which stages run, in which order, and what they hand to each other.
 #pragma once
 #include "runtime/camera.h"
+#include "runtime/global_illumination.h"
 #include "runtime/settings.h"
 #include "runtime/stages/direct.h"
 #include "runtime/stages/primary.h"
@@ -14,6 +15,7 @@ enum class Mode
 {
     kDirect,    // emission, direct light, mirrors and glass
     kReference, // everything, by path tracing
+    kGi,        // everything, by photons and irradiance samples
 };
 
 class Renderer
@@ -24,7 +26,8 @@ public:
 
     /// Allocates for pictures of `width` x `height` pixels; make another Renderer for another size,
     /// which checkSize() has let pass.
-    Renderer(const Device& device, const SceneGpu& scene, Mode mode, uint32_t width, uint32_t height);
+    /// Mode::kGi allocates for the counts in `settings`; record() may then be given smaller ones.
+    Renderer(const Device& device, const SceneGpu& scene, Mode mode, uint32_t width, uint32_t height, const Settings& settings = {});
 
     /// Records one frame, `sample_count` more samples a pixel. A changed camera starts the picture anew.
     void record(Recorder& rec, const Camera& camera, const Settings& settings, uint32_t seed, uint32_t sample_count = 1);
@@ -49,6 +52,7 @@ private:
     std::optional<PrimaryStage> primary_;
     std::optional<DirectStage> direct_;
     std::optional<ReferenceStage> reference_;
+    std::optional<GlobalIllumination> gi_;
     ResolveStage resolve_;
     std::optional<gpu::CameraParams> last_camera_;
 };

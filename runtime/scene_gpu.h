@@ -21,8 +21,10 @@ public:
     const gpu::SceneInfo& info() const { return info_; }
     /// Specialization constants of every kernel that reads the scene: features, texture pages in use (lib/scene.glsl).
     std::span<const uint32_t> constants() const { return constants_; }
+    /// Whether it has any of these kFeature*.
+    bool hasFeature(uint32_t features) const { return (constants_[0] & features) != 0; }
     /// Some light has an extent, so that a ray may find it: an emissive triangle or an environment.
-    bool hasAreaLights() const { return (constants_[0] & (gpu::kFeatureTriangleLights | gpu::kFeatureEnvironment)) != 0; }
+    bool hasAreaLights() const { return hasFeature(gpu::kFeatureTriangleLights | gpu::kFeatureEnvironment); }
 
 private:
     explicit SceneGpu(const Device& device) : device_(device) {}

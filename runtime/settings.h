@@ -12,6 +12,21 @@ struct Settings
 {
     uint32_t specular_depth = 8;
     uint32_t direct_samples = 1;
+    uint32_t photon_count = 100000; // paths
+    uint32_t photon_bounces = 8;
+    uint32_t density_photons = 100;
+    float density_radius = 0.1f; // of the scene's diagonal
+    uint32_t cut_mode = 3; // CutMode
+    uint32_t cut_iterations = 4;
+    float cut_difference = 0.2f;
+    uint32_t samples_mode = 2; // SamplesMode
+    uint32_t sample_count = 4096;
+    uint32_t sample_iterations = 3;
+    float sample_alpha = 0.3f;
+    uint32_t gather_rays = 256;
+    uint32_t caustic_photons = 100000; // paths
+    uint32_t caustic_density_photons = 200;
+    float caustic_radius = 0.05f; // of the scene's diagonal
     uint32_t reference_depth = 64;
     float exposure = 0;
     uint32_t tonemap = 2; // Tonemap

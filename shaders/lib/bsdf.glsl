@@ -87,6 +87,32 @@ vec3 belowColor(Bsdf b, float cosine)
     return (1.0 - b.metallic) * (1.0 - maxComponent(dielectricFresnel(b, cosine))) * b.base_color;
 }
 
+/// Colour of the diffuse lobe before the dielectric layer above it takes its share; black where there is none.
+vec3 diffuseColor(Bsdf b) { return (1.0 - b.metallic) * (1.0 - b.transmission) * b.base_color; }
+
+/// Directional-hemispherical reflectance of the diffuse lobe. The layer's (1 - wo.h)^5 has no closed form over the
+/// hemisphere: a cubic in wo's cosine, good to 1e-4.
+vec3 diffuseReflectance(Bsdf b, float cosine)
+{
+    if (!hasFeature(kFeatureSpecular))
+        return diffuseColor(b);
+    float mean_rise = 0.0280436 + cosine * (-0.0772954 + cosine * (0.0747859 - 0.0255469 * cosine));
+    return diffuseColor(b) * (1.0 - maxComponent(b.f0 + (vec3(b.f90) - b.f0) * mean_rise));
+}
+
+/// The same of the rough reflection lobe (Karis 2014, "Physically Based Shading on Mobile"); 0 for a smooth one.
+vec3 glossyReflectance(Bsdf b, float cosine)
+{
+    if (!hasFeature(kFeatureSpecular) || b.smooth_specular)
+        return vec3(0.0);
+    vec4 r = sqrt(b.alpha) * vec4(-1.0, -0.0275, -0.572, 0.022) + vec4(1.0, 0.0425, 1.04, -0.04);
+    float a = min(r.x * r.x, exp2(-9.28 * cosine)) * r.x + r.y;
+    vec2 scale = vec2(-1.04, 1.04) * a + r.zw;
+    vec3 f0 = mix(b.f0, b.base_color, b.metallic);
+    float f90 = mix(b.f90, 1.0, b.metallic);
+    return clamp(f0 * scale.x + f90 * scale.y, 0.0, 1.0);
+}
+
 struct LobeProbabilities { float reflection, diffuse, transmission; };
 
 LobeProbabilities lobeProbabilities(Bsdf b, float cosine)

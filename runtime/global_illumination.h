@@ -1,0 +1,35 @@
+// Global illumination after Wang et al. 2009: photons, their tree, the illumination cut, irradiance samples, final
+// gathering, interpolation and caustics, in this order, all on the GPU.
+#pragma once
+#include "runtime/settings.h"
+#include "runtime/stages/caustics.h"
+#include "runtime/stages/direct.h"
+#include "runtime/stages/gather.h"
+#include "runtime/stages/interpolate.h"
+#include "runtime/stages/primary.h"
+
+class GlobalIllumination
+{
+public:
+    /// Allocates for pictures of width x height pixels and for the counts in `settings`; later settings may ask for fewer
+    /// photons, samples and rays, not for more.
+    GlobalIllumination(const Device& device, const SceneGpu& scene, const Settings& settings, uint32_t width, uint32_t height);
+
+    /// Records one frame: one sample a pixel, vec3[width * height].
+    /// @param camera with first_sample: the frame's index in a standing picture
+    const Buffer& record(Recorder& rec, const RayStage& rays, const gpu::CameraParams& camera, const Settings& settings);
+
+private:
+    uint32_t width_, height_;
+    float diagonal_, longest_side_; // of the scene, metres
+    bool has_specular_;
+    PrimaryStage primary_;
+    DirectStage direct_;
+    PhotonStage photons_, caustic_photons_;
+    PhotonTreeStage photon_tree_, caustic_tree_;
+    CutStage cut_;
+    SamplesStage samples_;
+    GatherStage gather_;
+    InterpolateStage interpolate_;
+    CausticsStage caustics_;
+};

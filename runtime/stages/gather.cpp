@@ -1,0 +1,47 @@
+#include "runtime/stages/gather.h"
+
+GatherStage::GatherStage(const Device& device, const SceneGpu& scene, uint32_t max_samples, uint32_t max_rays_per_sample)
+    : max_samples_(max_samples), has_specular_(scene.hasFeature(gpu::kFeatureSpecular)), generate_(device.kernel("gather/generate")),
+      link_(device.kernel("gather/link", scene.constants())), link_knn_(device.kernel("gather/link_knn", scene.constants())),
+      sum_(device.kernel("gather/sum")), queue_(device, "gather.queue", max_samples * max_rays_per_sample),
+      next_queue_(device, "gather.next_queue", max_samples * max_rays_per_sample),
+      hits_(device.array<gpu::Hit>("gather.hits", uint64_t(max_samples) * max_rays_per_sample)),
+      states_(device.array<gpu::GatherState>("gather.states", uint64_t(max_samples) * max_rays_per_sample)),
+      gathered_(device.array<gpu::Gathered>("gather.gathered", uint64_t(max_samples) * max_rays_per_sample))
+{
+}
+
+void GatherStage::record(Recorder& rec, const RayStage& rays, const SamplesStage::Output& samples, const PhotonTreeStage::Output& map,
+                         const CutStage::Output& cut, const Input& in) const
+{
+    gpu::GatherParams params{.ray_count = in.ray_count,
+                             .seed = in.seed,
+                             .depth = 0,
+                             .depth_limit = has_specular_ ? in.specular_depth : 0,
+                             .mode = uint32_t(in.mode),
+                             .photon_count = in.photon_count,
+                             .radius = in.radius};
+    rec.run(generate_, max_samples_ * in.ray_count, params,
+            {{"Size", samples.size}, {"Samples", samples.samples}, {"Queue", queue_.size}, {"Rays", queue_.rays}});
+    const RayQueue* queue = &queue_;
+    const RayQueue* next = &next_queue_;
+    for (; params.depth <= params.depth_limit; ++params.depth)
+    {
+        rays.closest(rec, *queue, hits_, traceSeed(in.seed, 0, params.depth));
+        rays.reset(rec, next->size);
+        if (in.mode == CutMode::kKnn)
+            rec.runIndirect(link_knn_, queue->size, 0, params,
+                            {{"Queue", queue->size}, {"Rays", queue->rays}, {"Hits", hits_}, {"States", states_}, {"NextQueue", next->size},
+                             {"NextRays", next->rays}, {"GatheredBlock", gathered_}, {"Size", map.size}, {"TreeNodes", map.tree.nodes()},
+                             {"Photons", map.photons}});
+        else
+            rec.runIndirect(link_, queue->size, 0, params,
+                            {{"Queue", queue->size}, {"Rays", queue->rays}, {"Hits", hits_}, {"States", states_}, {"NextQueue", next->size},
+                             {"NextRays", next->rays}, {"GatheredBlock", gathered_}, {"CutSize", cut.size}, {"TreeNodes", cut.tree.nodes()},
+                             {"CutNodes", cut.nodes}});
+        rays.close(rec, next->size);
+        std::swap(queue, next);
+    }
+    rec.run(sum_, max_samples_ * gpu::kRaysGroupSize, params,
+            {{"Size", samples.size}, {"GatheredBlock", gathered_}, {"Samples", samples.samples}});
+}

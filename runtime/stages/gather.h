@@ -1,0 +1,31 @@
+// Final gathering: every sample's irradiance from hundreds of rays, which read the illumination cut where they end.
+#pragma once
+#include "runtime/stages/cut.h"
+#include "runtime/stages/samples.h"
+#include "shaders/gather/gather.h"
+
+class GatherStage
+{
+public:
+    GatherStage(const Device& device, const SceneGpu& scene, uint32_t max_samples, uint32_t max_rays_per_sample);
+
+    struct Input
+    {
+        CutMode mode;
+        uint32_t ray_count;      // of a sample, <= max_rays_per_sample
+        uint32_t specular_depth; // most delta events of a ray
+        uint32_t photon_count;   // k, in CutMode::kKnn
+        float radius;            // metres: of density estimation, and how far a cut node may be
+        uint32_t seed;
+    };
+    /// Sets irradiance and harmonic of samples.samples.
+    void record(Recorder& rec, const RayStage& rays, const SamplesStage::Output& samples, const PhotonTreeStage::Output& map,
+                const CutStage::Output& cut, const Input& in) const;
+
+private:
+    uint32_t max_samples_;
+    bool has_specular_;
+    Kernel generate_, link_, link_knn_, sum_;
+    RayQueue queue_, next_queue_;
+    Buffer hits_, states_, gathered_;
+};

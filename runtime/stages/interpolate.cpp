@@ -1,0 +1,20 @@
+#include "runtime/stages/interpolate.h"
+
+InterpolateStage::InterpolateStage(const Device& device, const SceneGpu& scene, uint32_t max_samples)
+    : reorder_(device.kernel("interpolate/reorder")), apply_(device.kernel("interpolate/apply", scene.constants())),
+      tree_(device, "interpolate.tree", max_samples), sorted_(device.array<gpu::Sample>("interpolate.sorted", max_samples)),
+      statistics_(device.array<gpu::InterpolateStatistics>("interpolate.statistics", 1))
+{
+}
+
+void InterpolateStage::record(Recorder& rec, const SamplesStage::Output& samples, const Input& in) const
+{
+    tree_.record(rec, samples.spheres, samples.size);
+    rec.runIndirect(reorder_, samples.size, 0, NoParams{},
+                    {{"Size", samples.size}, {"Order", tree_.order()}, {"Samples", samples.samples}, {"Sorted", sorted_}});
+    rec.clear(statistics_);
+    const gpu::InterpolateParams params{.point_count = in.point_count, .alpha = in.alpha, .radius = in.radius};
+    rec.run(apply_, in.point_count, params,
+            {{"Size", samples.size}, {"TreeNodes", tree_.nodes()}, {"Samples", sorted_}, {"Points", in.points}, {"Radiance", in.radiance},
+             {"Statistics", statistics_}});
+}

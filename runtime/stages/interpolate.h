@@ -1,0 +1,27 @@
+// Interpolation: indirect diffuse light at every pixel from the samples around its shading point.
+#pragma once
+#include "runtime/stages/samples.h"
+#include "shaders/interpolate/interpolate.h"
+
+class InterpolateStage
+{
+public:
+    InterpolateStage(const Device& device, const SceneGpu& scene, uint32_t max_samples);
+
+    struct Input
+    {
+        const Buffer& points;   // gpu::ShadingPoint[point_count]
+        const Buffer& radiance; // vec3[point_count], grows by the indirect diffuse light
+        uint32_t point_count;
+        float alpha;  // of Eq. 2, per metre, where no sample is accepted
+        float radius; // metres: how far a sample may be there
+    };
+    void record(Recorder& rec, const SamplesStage::Output& samples, const Input& in) const;
+
+    const Buffer& statistics() const { return statistics_; } // gpu::InterpolateStatistics of the last frame
+
+private:
+    Kernel reorder_, apply_;
+    Tree tree_;
+    Buffer sorted_, statistics_;
+};

@@ -1,0 +1,25 @@
+// A photon map: the photons that were stored, in the order of a tree over their positions.
+#pragma once
+#include "runtime/stages/photons.h"
+#include "runtime/stages/tree.h"
+
+class PhotonTreeStage
+{
+public:
+    /// @param max_slots of the photon stage it is built from
+    PhotonTreeStage(const Device& device, std::string_view name, uint32_t max_slots);
+
+    struct Output
+    {
+        const Buffer& size;    // gpu::QueueSize: photons
+        const Buffer& photons; // gpu::Photon[size.count], sorted as the tree
+        const Tree& tree;
+    };
+    Output record(Recorder& rec, const RayStage& rays, const PhotonStage::Output& in) const;
+
+private:
+    Kernel collect_, reorder_;
+    Compaction compaction_;
+    Tree tree_;
+    Buffer slot_count_, size_, slots_, spheres_, sorted_;
+};

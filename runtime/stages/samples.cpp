@@ -1,0 +1,101 @@
+#include "runtime/stages/samples.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace
+{
+// Points a sample: enough that a cluster's mean is settled, and no more, for every point costs a search an iteration.
+constexpr uint32_t kPointsPerSample = 24;
+
+uint32_t strideFor(uint32_t pixel_count, uint32_t max_samples)
+{
+    uint32_t stride = 1;
+    while (pixel_count / (4 * stride * stride) >= kPointsPerSample * max_samples)
+        stride *= 2;
+    return stride;
+}
+
+uint32_t levelsFor(uint32_t width, uint32_t height, uint32_t stride)
+{
+    const uint32_t longest = (std::max(width, height) + stride - 1) / stride;
+    return std::max(1u, uint32_t(std::bit_width(longest - 1)));
+}
+} // namespace
+
+SamplesStage::SamplesStage(const Device& device, const SceneGpu& scene, uint32_t width, uint32_t height, uint32_t max_samples)
+    : width_(width), height_(height), stride_(strideFor(width * height, max_samples)), levels_(levelsFor(width, height, stride_)),
+      point_count_(1u << (2 * levels_)), points_kernel_(device.kernel("samples/points", scene.constants())),
+      mean_(device.kernel("samples/mean")), variation_(device.kernel("samples/variation")), budget_(device.kernel("samples/budget")),
+      seed_(device.kernel("samples/seed")), assign_(device.kernel("samples/assign")), update_(device.kernel("samples/update")),
+      snap_(device.kernel("samples/snap")), occupied_kernel_(device.kernel("samples/occupied")), place_(device.kernel("samples/place")),
+      seed_compaction_(device, "samples.seed_compaction", point_count_), sample_compaction_(device, "samples.compaction", max_samples),
+      tree_(device, "samples.tree", max_samples), point_size_(device.array<gpu::QueueSize>("samples.point_size", 1)),
+      points_(device.array<gpu::SamplePoint>("samples.points", point_count_)),
+      quad_nodes_(device.array<gpu::QuadNode>("samples.quad_nodes", point_count_ / 3 + 1)),
+      budgets_(device.array<uint32_t>("samples.budgets", point_count_ / 3 + 1)),
+      seed_flags_(device.array<uint32_t>("samples.seed_flags", point_count_)), seeds_(device.array<uint32_t>("samples.seeds", point_count_)),
+      cluster_size_(device.array<gpu::QueueSize>("samples.cluster_size", 1)),
+      clusters_(device.array<gpu::Cluster>("samples.clusters", max_samples)),
+      cluster_spheres_(device.array<gpu::vec4>("samples.cluster_spheres", max_samples)),
+      sums_(device.array<gpu::ClusterSums>("samples.sums", max_samples)), owners_(device.array<gpu::uvec2>("samples.owners", point_count_)),
+      occupied_flags_(device.array<uint32_t>("samples.occupied_flags", max_samples)),
+      occupied_(device.array<uint32_t>("samples.occupied", max_samples)), size_(device.array<gpu::QueueSize>("samples.size", 1)),
+      samples_(device.array<gpu::Sample>("samples.samples", max_samples)), spheres_(device.array<gpu::vec4>("samples.spheres", max_samples))
+{
+}
+
+void SamplesStage::assign(Recorder& rec, const gpu::ClusterParams& params) const
+{
+    tree_.record(rec, cluster_spheres_, cluster_size_);
+    rec.run(assign_, point_count_, params,
+            {{"Size", cluster_size_}, {"Points", points_}, {"Clusters", clusters_}, {"TreeNodes", tree_.nodes()}, {"Order", tree_.order()},
+             {"Sums", sums_}, {"Owners", owners_}});
+}
+
+SamplesStage::Output SamplesStage::record(Recorder& rec, const RayStage& rays, const Input& in) const
+{
+    rec.run(points_kernel_, point_count_,
+            gpu::PointParams{.width = width_, .height = height_, .stride = stride_, .levels = levels_, .seed = in.seed},
+            {{"ShadingPoints", in.shading_points}, {"Points", points_}});
+
+    // Fixed point that cannot overflow: eps <= 2 + alpha x the scene's diagonal, which is at most sqrt(3) x its longest side.
+    gpu::SeedParams seeding{.level = 0,
+                            .levels = levels_,
+                            .budget = in.budget,
+                            .seed = in.seed,
+                            .alpha = in.alpha,
+                            .variation_scale = 4294967040.0f / (8.0f * float(point_count_)),
+                            .uniform_ = in.mode == SamplesMode::kUniform};
+    const auto levelThreads = [&](uint32_t level) { return 1u << (2 * (levels_ - level)); };
+    for (seeding.level = 1; seeding.level <= levels_; ++seeding.level)
+        rec.run(mean_, levelThreads(seeding.level), seeding, {{"Points", points_}, {"Nodes", quad_nodes_}});
+    rec.run(variation_, point_count_, seeding, {{"Points", points_}, {"Nodes", quad_nodes_}});
+    rec.clear(seed_flags_);
+    for (seeding.level = levels_; seeding.level >= 1; --seeding.level)
+        rec.run(budget_, levelThreads(seeding.level), seeding,
+                {{"Points", points_}, {"Nodes", quad_nodes_}, {"Budgets", budgets_}, {"Seeds", seed_flags_}});
+    rays.resize(rec, point_size_, point_count_);
+    seed_compaction_.record(rec, seed_flags_, seeds_, cluster_size_, point_size_);
+    rec.runIndirect(seed_, cluster_size_, 0, NoParams{},
+                    {{"Size", cluster_size_}, {"Seeds", seeds_}, {"Points", points_}, {"Clusters", clusters_},
+                     {"Spheres", cluster_spheres_}, {"Sums", sums_}});
+
+    const gpu::ClusterParams clustering{
+        .point_count = point_count_, .alpha = in.alpha, .fixed_scale = 4294967040.0f / float(point_count_)};
+    for (uint32_t i = 0; in.mode == SamplesMode::kKmeans && i < in.iterations; ++i)
+    {
+        assign(rec, clustering);
+        rec.runIndirect(update_, cluster_size_, 0, clustering,
+                        {{"Size", cluster_size_}, {"Sums", sums_}, {"Clusters", clusters_}, {"Spheres", cluster_spheres_}});
+    }
+    assign(rec, clustering);
+    rec.run(snap_, point_count_, clustering, {{"Owners", owners_}, {"Sums", sums_}});
+    rec.runIndirect(occupied_kernel_, cluster_size_, 0, NoParams{},
+                    {{"Size", cluster_size_}, {"Sums", sums_}, {"Flags", occupied_flags_}});
+    sample_compaction_.record(rec, occupied_flags_, occupied_, size_, cluster_size_);
+    rec.runIndirect(place_, size_, 0, NoParams{},
+                    {{"Size", size_}, {"Occupied", occupied_}, {"Sums", sums_}, {"Points", points_}, {"Samples", samples_},
+                     {"Spheres", spheres_}});
+    return {.size = size_, .samples = samples_, .spheres = spheres_};
+}

@@ -1,0 +1,49 @@
+// Irradiance samples: adaptive seeding over a quadtree of the picture (Algorithm 1), k-means clustering (Algorithm 2).
+#pragma once
+#include "runtime/stages/rays.h"
+#include "runtime/stages/tree.h"
+#include "shaders/samples/samples.h"
+
+enum class SamplesMode : uint32_t
+{
+    kUniform, // seeds follow the number of shading points
+    kSeeded,  // seeds follow geometric variation
+    kKmeans,  // the same, then moved by k-means
+};
+
+class SamplesStage
+{
+public:
+    SamplesStage(const Device& device, const SceneGpu& scene, uint32_t width, uint32_t height, uint32_t max_samples);
+
+    struct Input
+    {
+        const Buffer& shading_points; // gpu::ShadingPoint[width * height]
+        SamplesMode mode;
+        uint32_t budget;     // samples, <= max_samples
+        uint32_t iterations; // of k-means
+        float alpha;         // of Eq. 2, per metre
+        uint32_t seed;
+    };
+    struct Output
+    {
+        const Buffer& size;    // gpu::QueueSize: samples
+        const Buffer& samples; // gpu::Sample[size.count], irradiance still to be gathered
+        const Buffer& spheres; // vec4[size.count]: their positions and supports
+    };
+    Output record(Recorder& rec, const RayStage& rays, const Input& in) const;
+
+    /// Pixels between neighbouring points of the quadtree, each way.
+    uint32_t stride() const { return stride_; }
+
+private:
+    void assign(Recorder& rec, const gpu::ClusterParams& params) const;
+
+    uint32_t width_, height_, stride_, levels_, point_count_;
+    Kernel points_kernel_, mean_, variation_, budget_, seed_, assign_, update_, snap_, occupied_kernel_, place_;
+    Compaction seed_compaction_, sample_compaction_;
+    Tree tree_;
+    Buffer point_size_, points_, quad_nodes_, budgets_, seed_flags_, seeds_;
+    Buffer cluster_size_, clusters_, cluster_spheres_, sums_, owners_, occupied_flags_, occupied_;
+    Buffer size_, samples_, spheres_;
+};

@@ -1,0 +1,24 @@
+#include "runtime/stages/tree.h"
+
+Tree::Tree(const Device& device, std::string_view name, uint32_t max_count)
+    : keys_kernel_(device.kernel("tree/keys")), hierarchy_(device.kernel("tree/hierarchy")), bounds_(device.kernel("tree/bounds")),
+      sort_(device, fmt::format("{}.sort", name), max_count), keys_(device.array<uint32_t>(fmt::format("{}.keys", name), max_count)),
+      order_(device.array<uint32_t>(fmt::format("{}.order", name), max_count)),
+      nodes_(device.array<gpu::TreeNode>(fmt::format("{}.nodes", name), max_count)),
+      leaf_parents_(device.array<uint32_t>(fmt::format("{}.leaf_parents", name), max_count)),
+      node_parents_(device.array<uint32_t>(fmt::format("{}.node_parents", name), max_count)),
+      arrivals_(device.array<uint32_t>(fmt::format("{}.arrivals", name), max_count))
+{
+}
+
+void Tree::record(Recorder& rec, const Buffer& spheres, const Buffer& size) const
+{
+    rec.clear(arrivals_);
+    rec.runIndirect(keys_kernel_, size, 0, NoParams{}, {{"Size", size}, {"Spheres", spheres}, {"Keys", keys_}, {"Order", order_}});
+    sort_.record(rec, keys_, order_, size, gpu::kTreeKeyBits);
+    rec.runIndirect(hierarchy_, size, 0, NoParams{},
+                    {{"Size", size}, {"Keys", keys_}, {"Nodes", nodes_}, {"LeafParents", leaf_parents_}, {"NodeParents", node_parents_}});
+    rec.runIndirect(bounds_, size, 0, NoParams{},
+                    {{"Size", size}, {"Spheres", spheres}, {"Order", order_}, {"LeafParents", leaf_parents_},
+                     {"NodeParents", node_parents_}, {"Nodes", nodes_}, {"Arrivals", arrivals_}});
+}

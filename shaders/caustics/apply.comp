@@ -1,0 +1,33 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "shaders/caustics/caustics.h"
+#include "shaders/lib/bsdf.glsl"
+
+// Caustics at every pixel: density estimation among the caustic photons around its shading point. One thread per pixel.
+
+layout(local_size_x = kRaysGroupSize) in;
+layout(push_constant, scalar) uniform Params { CausticsParams params; };
+
+layout(set = 1, binding = 0, scalar) readonly buffer Size { QueueSize size; };
+layout(set = 1, binding = 1, scalar) readonly buffer TreeNodes { TreeNode tree_nodes[]; };
+layout(set = 1, binding = 2, scalar) readonly buffer Photons { Photon photons[]; };
+layout(set = 1, binding = 3, scalar) readonly buffer Points { ShadingPoint points[]; };
+layout(set = 1, binding = 4, scalar) buffer Radiance { vec3 radiance[]; };
+#include "shaders/lib/density.glsl"
+
+void main()
+{
+    uint pixel = gl_GlobalInvocationID.x;
+    if (pixel >= params.point_count || points[pixel].slot == kNone)
+        return;
+    ShadingPoint point = points[pixel];
+    Surface s = surfaceAt(point.slot, point.barycentrics, point.direction);
+    Bsdf b = bsdfAt(materialAt(s), s.front);
+    vec3 reflectance = point.throughput * diffuseReflectance(b, max(0.0, -dot(s.normal, point.direction)));
+    if (reflectance == vec3(0.0))
+        return;
+    DensityEstimate estimate =
+        estimateIrradiance(s.position, s.geometric_normal, size.count, params.photon_count, square(params.radius));
+    radiance[pixel] += reflectance * kInvPi * estimate.irradiance;
+}

@@ -1,0 +1,20 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "shaders/cut/cut.h"
+
+// The nodes of the cut side by side. One thread per node.
+
+layout(local_size_x = kCutGroupSize) in;
+
+layout(set = 1, binding = 0, scalar) readonly buffer Size { QueueSize size; };
+layout(set = 1, binding = 1, scalar) readonly buffer Ids { uint ids[]; };
+layout(set = 1, binding = 2, scalar) readonly buffer Finals { CutNode finals[]; };
+layout(set = 1, binding = 3, scalar) writeonly buffer Spheres { vec4 spheres[]; };
+
+void main()
+{
+    uint i = gl_GlobalInvocationID.x;
+    if (i < size.count)
+        spheres[i] = vec4(finals[ids[i]].center, finals[ids[i]].support);
+}

@@ -1,0 +1,65 @@
+// The illumination cut through the photon tree. Shared by runtime/stages/cut.cpp, lib/cut.glsl and shaders/**.
+#ifndef SHADERS_CUT_H
+#define SHADERS_CUT_H
+#include "shaders/photons/photons.h"
+#include "shaders/tree/tree.h"
+
+GPU_NAMESPACE_BEGIN
+
+// A node of the photon tree by id: inner node i is i, photon i of n is n - 1 + i. There are 2 n - 1.
+
+struct PhotonSums // over the photons of an inner node
+{
+    vec3 power;       // watts
+    float weight;     // sum of luminances
+    vec3 normal;      // luminance-weighted sum of the photons' normals
+    vec3 position;    // likewise of their positions
+};
+GPU_SIZE(PhotonSums, 40);
+
+struct CutNode // one node of the cut: what light falls on the surface around its centre
+{
+    vec3 center;     // metres: power-weighted mean of its photons
+    float support;   // metres: how far from the centre it counts
+    vec3 irradiance; // W/m^2
+    uint normal;     // octahedral
+};
+GPU_SIZE(CutNode, 32);
+
+struct CutThreshold // made on the GPU each time the cut is built
+{
+    float irradiance; // E_min: mean luminance of E~ over the tree's level of about 4096 nodes
+    uint padding;
+};
+GPU_SIZE(CutThreshold, 8);
+
+struct PartialMean
+{
+    float sum;
+    uint count;
+};
+GPU_SIZE(PartialMean, 8);
+
+GPU_CONST uint kCutKnn = 0u;     // no cut: density estimation at every gather hit
+GPU_CONST uint kCutNearest = 1u; // the refined cut, read at its nearest node
+GPU_CONST uint kCutLeaves = 2u;  // the finest cut: nodes of kCutFewest photons at most
+GPU_CONST uint kCutRefined = 3u; // Algorithm 3
+
+GPU_CONST uint kCutGroupSize = 64u;
+GPU_CONST uint kPartialMeans = 64u;   // groups that sum E~
+GPU_CONST uint kPartialGroupSize = 256u;
+GPU_CONST uint kCutLevelNodes = 4096u; // nodes of the level that E_min is taken from
+GPU_CONST uint kCutFewest = 8u;        // nodes of fewer photons are not divided
+
+struct CutParams
+{
+    uint mode;         // kCut*
+    uint last;         // 1: every node that is left becomes final
+    float difference;  // Delta_E: relative difference that is let pass
+    uint photon_count; // k of the density estimation
+    float radius;      // metres, of the density estimation at most
+};
+GPU_SIZE(CutParams, 20);
+
+GPU_NAMESPACE_END
+#endif

@@ -1,0 +1,47 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "shaders/cut/cut.h"
+
+// One round of refinement: the irradiance E_p at a node's centre by density estimation; where it is near E~ the node is
+// final, else its children take its place (Algorithm 3, second half). One thread per node of the working list.
+
+layout(local_size_x = kCutGroupSize) in;
+layout(push_constant, scalar) uniform Params { CutParams params; };
+
+layout(set = 1, binding = 0, scalar) readonly buffer Size { QueueSize size; };
+layout(set = 1, binding = 1, scalar) readonly buffer TreeNodes { TreeNode tree_nodes[]; };
+layout(set = 1, binding = 2, scalar) readonly buffer Photons { Photon photons[]; };
+layout(set = 1, binding = 3, scalar) readonly buffer Sums { PhotonSums sums[]; };
+layout(set = 1, binding = 4, scalar) readonly buffer WorkSize { QueueSize work_size; };
+layout(set = 1, binding = 5, scalar) readonly buffer Work { uint work[]; };
+layout(set = 1, binding = 6, scalar) buffer NextSize { QueueSize next_size; };
+layout(set = 1, binding = 7, scalar) writeonly buffer Next { uint next[]; };
+layout(set = 1, binding = 8, scalar) writeonly buffer Members { uint members[]; };  // by id: 1 where final
+layout(set = 1, binding = 9, scalar) writeonly buffer Finals { CutNode finals[]; }; // by id
+#include "shaders/lib/density.glsl"
+#include "shaders/lib/photon_node.glsl"
+
+void main()
+{
+    uint i = gl_GlobalInvocationID.x;
+    if (i >= work_size.count)
+        return;
+    uint id = work[i];
+    PhotonNode node = photonNode(id);
+    DensityEstimate estimate =
+        estimateIrradiance(node.center, node.normal, size.count, params.photon_count, square(params.radius));
+    float exact = luminance(estimate.irradiance);
+    bool agrees = node.flat_ && abs(exact - node.irradiance) <= params.difference * max(exact, node.irradiance);
+    if (params.last != 0u || agrees || node.count < 2u * kCutFewest)
+    {
+        // A node of few photons speaks for as much surface as density estimation with that few would.
+        float support = max(node.longest, sqrt(estimate.radius2 * float(kCutFewest) / float(params.photon_count)));
+        members[id] = 1u;
+        finals[id] = CutNode(node.center, support, estimate.irradiance, packNormal(node.normal));
+        return;
+    }
+    uint slot = atomicAdd(next_size.count, 2u);
+    next[slot] = childId(tree_nodes[id].left);
+    next[slot + 1u] = childId(tree_nodes[id].right);
+}

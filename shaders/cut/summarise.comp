@@ -1,0 +1,48 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "shaders/cut/cut.h"
+
+// Power, normal and position sums of every inner node, from the photons up: whoever arrives second at a node goes on with
+// it. Two summands a node: their order does not matter. One thread per photon.
+
+layout(local_size_x = kCutGroupSize) in;
+
+layout(set = 1, binding = 0, scalar) readonly buffer Size { QueueSize size; };
+layout(set = 1, binding = 1, scalar) readonly buffer TreeNodes { TreeNode tree_nodes[]; };
+layout(set = 1, binding = 2, scalar) readonly buffer Photons { Photon photons[]; };
+layout(set = 1, binding = 3, scalar) readonly buffer LeafParents { uint leaf_parents[]; };
+layout(set = 1, binding = 4, scalar) readonly buffer NodeParents { uint node_parents[]; };
+layout(set = 1, binding = 5, scalar) coherent buffer Sums { PhotonSums sums[]; };
+layout(set = 1, binding = 6, scalar) coherent buffer Arrivals { uint arrivals[]; }; // 0 before
+#include "shaders/lib/photon_node.glsl"
+
+void main()
+{
+    uint i = gl_GlobalInvocationID.x;
+    if (i >= size.count || size.count < 2u)
+        return;
+    PhotonSums total = photonSums(i);
+    uint link = leaf_parents[i];
+    while (true)
+    {
+        uint node = link & ~kTreeLeafBit;
+        memoryBarrierBuffer();
+        if (atomicAdd(arrivals[node], 1u) == 0u)
+            return;
+        memoryBarrierBuffer();
+        uint sibling = (link & kTreeLeafBit) != 0u ? tree_nodes[node].left : tree_nodes[node].right;
+        uint index = sibling & ~kTreeLeafBit;
+        PhotonSums other;
+        if ((sibling & kTreeLeafBit) != 0u)
+            other = photonSums(index);
+        else
+            other = sums[index];
+        total = PhotonSums(total.power + other.power, total.weight + other.weight, total.normal + other.normal,
+                           total.position + other.position);
+        sums[node] = total;
+        if (node == 0u)
+            return;
+        link = node_parents[node];
+    }
+}

@@ -1,0 +1,36 @@
+// Final gathering. Shared by runtime/stages/gather.cpp and shaders/gather/*.comp.
+#ifndef SHADERS_GATHER_H
+#define SHADERS_GATHER_H
+#include "shaders/cut/cut.h"
+#include "shaders/samples/samples.h"
+
+GPU_NAMESPACE_BEGIN
+
+struct GatherState // of a ray between two links of its specular chain
+{
+    vec3 throughput;
+    uint medium;
+};
+GPU_SIZE(GatherState, 16);
+
+struct Gathered // what one ray brought
+{
+    vec3 radiance;
+    float nearness; // 1 / metres to its first surface; 0: none
+};
+GPU_SIZE(Gathered, 16);
+
+struct GatherParams
+{
+    uint ray_count; // of a sample
+    uint seed;
+    uint depth;       // delta events before this one
+    uint depth_limit;
+    uint mode;        // kCut*
+    uint photon_count; // k, in mode kCutKnn
+    float radius;     // metres: of density estimation, and how far a cut node may be
+};
+GPU_SIZE(GatherParams, 28);
+
+GPU_NAMESPACE_END
+#endif

@@ -1,0 +1,31 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "shaders/gather/gather.h"
+
+// Reads the illumination cut where gathering rays end. One thread per ray of the queue.
+
+layout(local_size_x = kRaysGroupSize) in;
+layout(push_constant, scalar) uniform Params { GatherParams params; };
+
+layout(set = 1, binding = 0, scalar) readonly buffer Queue { QueueSize queue; };
+layout(set = 1, binding = 1, scalar) readonly buffer Rays { Ray rays[]; };
+layout(set = 1, binding = 2, scalar) readonly buffer Hits { Hit hits[]; };
+layout(set = 1, binding = 3, scalar) buffer States { GatherState states[]; };
+layout(set = 1, binding = 4, scalar) buffer NextQueue { QueueSize next_queue; };
+layout(set = 1, binding = 5, scalar) writeonly buffer NextRays { Ray next_rays[]; };
+layout(set = 1, binding = 6, scalar) buffer GatheredBlock { Gathered gathered[]; };
+layout(set = 1, binding = 7, scalar) readonly buffer CutSize { QueueSize cut_size; };
+layout(set = 1, binding = 8, scalar) readonly buffer TreeNodes { TreeNode tree_nodes[]; };
+layout(set = 1, binding = 9, scalar) readonly buffer CutNodes { CutNode cut_nodes[]; };
+#include "shaders/lib/cut.glsl"
+
+vec3 irradianceAt(vec3 x, vec3 n)
+{
+    if (params.mode == kCutNearest)
+        return nearestCutIrradiance(x, n, params.radius * params.radius);
+    float support;
+    return cutIrradiance(x, n, params.radius * params.radius, support);
+}
+#include "shaders/gather/link.glsl"
+#include "shaders/gather/link_body.glsl"

@@ -1,0 +1,52 @@
+// One link of a gathering ray's path: at a surface that scatters it reads the light there; a mirror or glass sends it on.
+// Emitters add nothing: met directly they are direct light, met through mirrors or glass caustics. The kernel defines
+// `vec3 irradianceAt(vec3 x, vec3 n)` before it includes this. Functions only.
+#ifndef GATHER_LINK_GLSL
+#define GATHER_LINK_GLSL
+#include "shaders/gather/gather.h"
+#include "shaders/lib/path.glsl"
+
+struct Link
+{
+    vec3 radiance; // that the path brings home; 0 while it goes on
+    bool goes_on;
+    Ray next;
+};
+
+/// @param state of the path; updated where it goes on
+Link followLink(Ray ray, Hit hit, inout GatherState state, Sampler sampler_)
+{
+    Link link = Link(vec3(0.0), false, ray);
+    if (hit.slot == kNone)
+        return link;
+    Surface s = surfaceAt(hit.slot, hit.barycentrics, ray.direction);
+    SurfaceMaterial m = materialAt(s);
+    if ((m.flags & kMaterialUnlit) != 0u)
+        return link;
+    state.throughput *= mediumTransmittance(crossedMedium(state.medium, s, m), hit.t);
+    Bsdf b = bsdfAt(m, s.front);
+    mat3 frame = frameAround(s.normal);
+    vec3 wo = -ray.direction * frame;
+    LobeProbabilities p = lobeProbabilities(b, wo.z);
+    vec2 choice = nextPair(sampler_);
+    if (!b.smooth_specular || choice.x < p.diffuse)
+    {
+        vec3 reflectance = diffuseReflectance(b, wo.z) + glossyReflectance(b, wo.z);
+        vec3 carried = state.throughput * reflectance * (kInvPi / (b.smooth_specular ? p.diffuse : 1.0));
+        if (carried != vec3(0.0))
+            link.radiance = carried * irradianceAt(s.position, s.geometric_normal);
+        return link;
+    }
+    BsdfSample next = sampleBsdf(b, wo, choice.x, vec2(0.5));
+    vec3 wi = frame * next.wi;
+    if (next.weight == vec3(0.0) || !sidesAgree(s, wi, next.wi.z))
+        return link;
+    if (next.wi.z < 0.0 && !next.passed)
+        state.medium = s.front && enclosesMedium(s, m) ? s.material : kNone;
+    state.throughput *= next.weight;
+    link.goes_on = true;
+    link.next = leavingRay(s, wi, kInfinity, ray.path);
+    return link;
+}
+
+#endif

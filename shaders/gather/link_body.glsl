@@ -1,0 +1,24 @@
+// The body of gather/link.comp and gather/link_knn.comp, which differ in how they read the light where a ray ends.
+void main()
+{
+    uint i = gl_GlobalInvocationID.x;
+    if (i >= queue.count)
+        return;
+    Ray ray = rays[i];
+    Hit hit = hits[i];
+    GatherState state = GatherState(vec3(1.0), kNone);
+    if (params.depth > 0u)
+        state = states[ray.path];
+    uint sample_ = ray.path / params.ray_count;
+    Sampler sampler_ = Sampler(hash(params.seed, sample_), ray.path % params.ray_count, 1u + params.depth);
+    Link link = followLink(ray, hit, state, sampler_);
+    bool goes_on = link.goes_on && params.depth < params.depth_limit;
+    if (params.depth == 0u)
+        gathered[ray.path] = Gathered(link.radiance, hit.slot == kNone ? 0.0 : 1.0 / max(hit.t, 1e-6));
+    else
+        gathered[ray.path].radiance += link.radiance;
+    if (!goes_on)
+        return;
+    states[ray.path] = state;
+    next_rays[atomicAdd(next_queue.count, 1u)] = link.next;
+}

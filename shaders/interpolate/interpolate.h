@@ -1,0 +1,24 @@
+// Interpolation of irradiance. Shared by runtime/stages/interpolate.cpp and shaders/interpolate/*.comp.
+#ifndef SHADERS_INTERPOLATE_H
+#define SHADERS_INTERPOLATE_H
+#include "shaders/samples/samples.h"
+
+GPU_NAMESPACE_BEGIN
+
+struct InterpolateParams
+{
+    uint point_count;
+    float alpha;  // of Eq. 2, per metre, where no sample is accepted
+    float radius; // metres: how far a sample may be there
+};
+GPU_SIZE(InterpolateParams, 12);
+
+struct InterpolateStatistics
+{
+    uint fallbacks; // pixels where no sample was accepted and the one of least variation was taken
+    uint unlit;     // pixels without any sample in reach
+};
+GPU_SIZE(InterpolateStatistics, 8);
+
+GPU_NAMESPACE_END
+#endif

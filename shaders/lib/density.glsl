@@ -1,0 +1,87 @@
+// Density estimation among photons: irradiance at a point from its k nearest photons (Jensen 1996). The kernel declares
+// `buffer TreeNodes` and `buffer Photons { Photon photons[]; }`, sorted as the tree, before it includes this. Functions only.
+#ifndef LIB_DENSITY_GLSL
+#define LIB_DENSITY_GLSL
+#include "shaders/lib/math.glsl"
+#include "shaders/lib/tree.glsl"
+#include "shaders/photons/photons.h"
+
+const uint kDensityBins = 32u;
+const uint kDensityRefinements = 3u; // histograms, each within one bin of the one before
+const uint kLeastPhotons = 8u;       // fewer say nothing
+
+/// Squared distance of a photon to x, kInfinity where it lights another surface.
+float photonDistance2(Photon photon, vec3 x, vec3 n)
+{
+    vec3 d = photon.position - x;
+    bool counts = dot(n, unpackNormal(photon.direction)) < 0.0 && dot(n, unpackNormal(photon.normal)) > 0.1;
+    return counts ? dot(d, d) : kInfinity;
+}
+
+/// Squared distance within which there are `wanted` photons, or radius2 where there are fewer.
+/// @param found photons within that distance
+float nearestRadius2(vec3 x, vec3 n, uint photon_count, uint wanted, float radius2, out uint found)
+{
+    uint bins[kDensityBins];
+    float low = 0.0, high = radius2;
+    uint below = 0u;
+    for (uint refinement = 0u; refinement < kDensityRefinements; ++refinement)
+    {
+        for (uint b = 0u; b < kDensityBins; ++b)
+            bins[b] = 0u;
+        float scale = float(kDensityBins) / (high - low);
+        uint first, end;
+        beginRanges(photon_count);
+        while (nextRange(x, high, first, end))
+            for (uint i = first; i < end; ++i)
+            {
+                float d2 = photonDistance2(photons[i], x, n);
+                if (d2 >= low && d2 < high)
+                    ++bins[min(uint((d2 - low) * scale), kDensityBins - 1u)];
+            }
+        uint b = 0u;
+        found = below;
+        for (; b < kDensityBins; ++b)
+        {
+            found += bins[b];
+            if (found >= wanted)
+                break;
+            below = found;
+        }
+        if (b == kDensityBins)
+            return high;
+        float width = (high - low) / float(kDensityBins);
+        high = low + float(b + 1u) * width;
+        low += float(b) * width;
+        if (found <= wanted + wanted / 16u)
+            break;
+    }
+    return high;
+}
+
+struct DensityEstimate
+{
+    vec3 irradiance; // W/m^2
+    float radius2;   // square metres: what it was taken over
+};
+
+/// Irradiance at x from the `wanted` nearest photons within sqrt(radius2), weighted by (1 - d^2/r^2)^2, whose integral
+/// over the disc is pi r^2 / 3 (Silverman 1986). 0 where there are fewer than kLeastPhotons.
+DensityEstimate estimateIrradiance(vec3 x, vec3 n, uint photon_count, uint wanted, float radius2)
+{
+    uint found;
+    float within2 = nearestRadius2(x, n, photon_count, wanted, radius2, found);
+    vec3 sum = vec3(0.0);
+    uint first, end;
+    beginRanges(photon_count);
+    while (found >= kLeastPhotons && nextRange(x, within2, first, end))
+        for (uint i = first; i < end; ++i)
+        {
+            float d2 = photonDistance2(photons[i], x, n);
+            if (d2 < within2)
+                sum += photons[i].power * square(1.0 - d2 / within2);
+        }
+    return DensityEstimate(sum * (3.0 * kInvPi / within2), within2);
+}
+
+#endif

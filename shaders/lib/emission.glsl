@@ -1,0 +1,189 @@
+// Photons leave lights: positions and directions by each light's own distribution, or aimed at the scene's specular
+// objects (Jensen 2001, "Realistic Image Synthesis Using Photon Mapping", 5.2 and 5.3). Functions only.
+#ifndef LIB_EMISSION_GLSL
+#define LIB_EMISSION_GLSL
+#include "shaders/lib/lights.glsl"
+
+layout(set = 0, binding = kCausticTargetsBinding, scalar) readonly buffer CausticTargets { CausticTarget caustic_targets[]; };
+
+struct Emission
+{
+    vec3 origin;
+    vec3 direction; // unit
+    vec3 power;     // watts for one photon in all; 0: nothing leaves this way
+};
+
+const Emission kNoEmission = Emission(vec3(0.0), vec3(0.0, 0.0, 1.0), vec3(0.0));
+
+vec3 uniformSphere(vec2 u)
+{
+    float z = 1.0 - 2.0 * u.x, r = sqrt(max(0.0, 1.0 - z * z)), phi = 2.0 * kPi * u.y;
+    return vec3(r * cos(phi), r * sin(phi), z);
+}
+
+/// A direction within `height` = 1 - cos(half angle) of the z axis.
+vec3 uniformCone(float height, vec2 u)
+{
+    float h = height * u.x, r = sqrt(max(0.0, h * (2.0 - h))), phi = 2.0 * kPi * u.y;
+    return vec3(r * cos(phi), r * sin(phi), 1.0 - h);
+}
+
+vec2 uniformDisc(vec2 u)
+{
+    float r = sqrt(u.x), phi = 2.0 * kPi * u.y;
+    return r * vec2(cos(phi), sin(phi));
+}
+
+/// 1 - cos of the half angle under which a sphere is seen; 2, the whole sphere of directions, from within.
+float coneHeight(CausticTarget target, vec3 origin)
+{
+    vec3 to_center = target.center - origin;
+    float sin2 = square(target.radius) / dot(to_center, to_center);
+    return sin2 >= 1.0 ? 2.0 : sin2 / (1.0 + sqrt(1.0 - sin2));
+}
+
+/// Density per steradian of directions aimed from `origin`, targets picked uniformly.
+float aimedDirectionPdf(vec3 origin, vec3 direction)
+{
+    float pdf = 0.0;
+    for (uint i = 0u; i < scene.caustic_target_count; ++i)
+    {
+        float height = coneHeight(caustic_targets[i], origin);
+        bool inside = dot(direction, normalize(caustic_targets[i].center - origin)) >= 1.0 - height;
+        pdf += inside ? 1.0 / (2.0 * kPi * height) : 0.0;
+    }
+    return pdf / float(scene.caustic_target_count);
+}
+
+/// Density per square metre of origins across a parallel beam, aimed at targets picked uniformly.
+float aimedBeamPdf(vec3 origin, vec3 direction)
+{
+    float pdf = 0.0;
+    for (uint i = 0u; i < scene.caustic_target_count; ++i)
+    {
+        vec3 off_axis = cross(caustic_targets[i].center - origin, direction);
+        float radius2 = square(caustic_targets[i].radius);
+        pdf += dot(off_axis, off_axis) <= radius2 ? 1.0 / (kPi * radius2) : 0.0;
+    }
+    return pdf / float(scene.caustic_target_count);
+}
+
+vec3 sceneCenter() { return 0.5 * (scene.bounds_min + scene.bounds_max); }
+float sceneRadius() { return 0.5 * length(scene.bounds_max - scene.bounds_min) * 1.0001; }
+
+/// Where along a parallel beam a photon starts, in front of the whole scene, and the density of that per square metre.
+vec3 beamOrigin(vec3 direction, float aim, bool aimed, uint target, vec2 u, out float pdf)
+{
+    vec3 center = aimed ? caustic_targets[target].center : sceneCenter();
+    float radius = aimed ? caustic_targets[target].radius : sceneRadius();
+    mat3 frame = frameAround(direction);
+    vec2 disc = uniformDisc(u) * radius;
+    vec3 origin = center + frame * vec3(disc, 0.0);
+    origin += direction * (dot(sceneCenter() - origin, direction) - sceneRadius());
+    vec3 off_center = cross(sceneCenter() - origin, direction);
+    bool inside = dot(off_center, off_center) <= square(sceneRadius());
+    pdf = inside ? (1.0 - aim) / (kPi * square(sceneRadius())) : 0.0;
+    if (aim > 0.0)
+        pdf += aim * aimedBeamPdf(origin, direction);
+    return origin;
+}
+
+Emission emitPoint(Light light, float aim, bool aimed, uint target, vec2 u)
+{
+    float cos_outer = light.kind == kLightSpot ? -light.p2.y / light.p2.x : -1.0;
+    float height = 1.0 - cos_outer;
+    vec3 axis = light.kind == kLightSpot ? light.p1 : vec3(0.0, 0.0, 1.0);
+    if (aimed)
+        axis = normalize(caustic_targets[target].center - light.p0);
+    vec3 direction = frameAround(axis) * uniformCone(aimed ? coneHeight(caustic_targets[target], light.p0) : height, u);
+    vec3 intensity = light.emission;
+    bool in_cone = true;
+    if (light.kind == kLightSpot)
+    {
+        float cosine = dot(light.p1, direction);
+        in_cone = cosine >= cos_outer;
+        intensity *= square(clamp(cosine * light.p2.x + light.p2.y, 0.0, 1.0));
+    }
+    float pdf = in_cone ? (1.0 - aim) / (2.0 * kPi * height) : 0.0;
+    if (aim > 0.0)
+        pdf += aim * aimedDirectionPdf(light.p0, direction);
+    return pdf > 0.0 ? Emission(light.p0, direction, intensity / (light.pmf * pdf)) : kNoEmission;
+}
+
+/// @param side below 0.5: a two-sided triangle emits from its front
+Emission emitTriangle(Light light, float aim, bool aimed, uint target, vec2 u, vec2 v, float side)
+{
+    float r = sqrt(v.x);
+    vec3 weights = vec3(1.0 - r, r * (1.0 - v.y), r * v.y);
+    vec3 position = interpolate(weights, light.p0, light.p1, light.p2);
+    vec3 twice_area = cross(light.p1 - light.p0, light.p2 - light.p0);
+    float area = 0.5 * length(twice_area);
+    bool two_sided = light.kind == kLightTriangleTwoSided;
+    vec3 normal = normalize(twice_area) * (two_sided && side >= 0.5 ? -1.0 : 1.0);
+    vec3 direction;
+    if (aimed)
+        direction = frameAround(normalize(caustic_targets[target].center - position)) *
+                    uniformCone(coneHeight(caustic_targets[target], position), u);
+    else
+        direction = frameAround(normal) * vec3(uniformDisc(u), sqrt(max(0.0, 1.0 - u.x)));
+    float cosine = dot(direction, normal);
+    if (aimed && two_sided)
+    {
+        normal *= cosine < 0.0 ? -1.0 : 1.0;
+        cosine = abs(cosine);
+    }
+    if (cosine <= 0.0)
+        return kNoEmission;
+    vec3 emission = light.emission;
+    if ((hasFeature(kFeatureEmissiveMaps) || kSceneHasAlpha) && light.material != kNone)
+    {
+        uvec3 vertex = loadTriangle(light.triangle).vertices;
+        vec2 uv0 = interpolate(weights, loadVertex(vertex.x).uv0, loadVertex(vertex.y).uv0, loadVertex(vertex.z).uv0);
+        vec2 uv1 = interpolate(weights, loadVertex(vertex.x).uv1, loadVertex(vertex.y).uv1, loadVertex(vertex.z).uv1);
+        emission = surfaceEmission(light.material, uv0, uv1);
+        if (kSceneHasAlpha)
+            emission *= surfaceCoverage(light.material, vertex, weights);
+    }
+    float pdf = (1.0 - aim) * cosine * kInvPi * (two_sided ? 0.5 : 1.0);
+    if (aim > 0.0)
+        pdf += aim * aimedDirectionPdf(position, direction);
+    return Emission(offsetOrigin(position, normal), direction, emission * (cosine * area / (light.pmf * pdf)));
+}
+
+Emission emitEnvironment(Light light, float aim, bool aimed, uint target, vec2 u, uvec2 pick, vec2 v)
+{
+    LightSample from = sampleEnvironment(light.pmf, pick, v); // its weight: radiance / pdf, selection included
+    if (from.pdf == 0.0)
+        return kNoEmission;
+    float pdf;
+    vec3 origin = beamOrigin(-from.wi, aim, aimed, target, u, pdf);
+    return Emission(origin, -from.wi, from.weight / pdf);
+}
+
+/// One photon of the scene's total power. Uses kEmitDimensions pairs of the sampler at most.
+/// @param aim probability of being aimed at a specular object; 0 where the scene has none
+Emission emitPhoton(float aim, inout Sampler s)
+{
+    if (scene.light_count == 0u)
+        return kNoEmission;
+    uvec2 pick = nextBits(s);
+    uvec2 target_pick = nextBits(s);
+    vec2 u = nextPair(s), v = nextPair(s);
+    uint i = toIndex(pick.x, scene.light_count);
+    if (toUnitFloat(pick.y) >= light_aliases[i].threshold)
+        i = light_aliases[i].alias;
+    Light light = loadLight(i);
+    bool aimed = toUnitFloat(target_pick.x) < aim;
+    uint target = aimed ? toIndex(target_pick.y, scene.caustic_target_count) : 0u;
+    if (hasFeature(kFeatureEnvironment) && light.kind == kLightEnvironment)
+        return emitEnvironment(light, aim, aimed, target, u, nextBits(s), v);
+    if (hasFeature(kFeatureTriangleLights) && (light.kind == kLightTriangle || light.kind == kLightTriangleTwoSided))
+        return emitTriangle(light, aim, aimed, target, u, v, nextPair(s).x);
+    if (light.kind != kLightDirectional)
+        return emitPoint(light, aim, aimed, target, u);
+    float pdf;
+    vec3 origin = beamOrigin(light.p1, aim, aimed, target, u, pdf);
+    return Emission(origin, light.p1, light.emission / (light.pmf * pdf));
+}
+
+#endif

@@ -1,0 +1,64 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "shaders/lib/math.glsl"
+#include "shaders/lib/scene.glsl"
+#include "shaders/lib/variation.glsl"
+#include "shaders/samples/samples.h"
+
+// Each point's nearest cluster by geometric variation: a range search, since eps >= alpha x distance, then sums of the
+// clusters (Algorithm 2). One thread per point.
+
+layout(local_size_x = kSamplesGroupSize) in;
+layout(push_constant, scalar) uniform Params { ClusterParams params; };
+
+layout(set = 1, binding = 0, scalar) readonly buffer Size { QueueSize size; };
+layout(set = 1, binding = 1, scalar) readonly buffer Points { SamplePoint points[]; };
+layout(set = 1, binding = 2, scalar) readonly buffer Clusters { Cluster clusters[]; };
+layout(set = 1, binding = 3, scalar) readonly buffer TreeNodes { TreeNode tree_nodes[]; };
+layout(set = 1, binding = 4, scalar) readonly buffer Order { uint order[]; };
+layout(set = 1, binding = 5, scalar) buffer Sums { ClusterSums sums[]; };
+layout(set = 1, binding = 6, scalar) writeonly buffer Owners { uvec2 owners[]; }; // by point: cluster, bits of eps
+#include "shaders/lib/tree.glsl"
+
+void main()
+{
+    uint p = gl_GlobalInvocationID.x;
+    if (p >= params.point_count)
+        return;
+    owners[p] = uvec2(kNone, 0u);
+    if (points[p].pixel == kNone)
+        return;
+    vec3 x = points[p].position;
+    vec3 n = unpackNormal(points[p].normal);
+    float best = 1e30;
+    uint owner = 0u;
+    uint first, end;
+    float radius2 = 1e30;
+    beginRanges(size.count);
+    while (nextRange(x, radius2, first, end))
+        for (uint i = first; i < end; ++i)
+        {
+            uint cluster = order[i];
+            float eps = geometricVariation(params.alpha, x, n, clusters[cluster].position, unpackNormal(clusters[cluster].normal));
+            if (eps < best || (eps == best && cluster < owner))
+            {
+                best = eps;
+                owner = cluster;
+                radius2 = square(best / params.alpha);
+            }
+        }
+    owners[p] = uvec2(owner, floatBitsToUint(best));
+    vec3 extent = scene.bounds_max - scene.bounds_min;
+    uvec3 position = uvec3(clamp((x - scene.bounds_min) / maxComponent(extent), 0.0, 1.0) * params.fixed_scale);
+    uvec3 normal = uvec3((0.5 * n + 0.5) * params.fixed_scale);
+    for (uint axis = 0u; axis < 3u; ++axis)
+    {
+        atomicAdd(sums[owner].position[axis], position[axis]);
+        atomicAdd(sums[owner].normal[axis], normal[axis]);
+    }
+    vec3 d = x - clusters[owner].position;
+    atomicAdd(sums[owner].count, 1u);
+    atomicMin(sums[owner].least_eps, floatBitsToUint(best));
+    atomicMax(sums[owner].farthest2, floatBitsToUint(dot(d, d)));
+}

@@ -1,0 +1,33 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "shaders/lib/math.glsl"
+#include "shaders/lib/scene.glsl"
+#include "shaders/samples/samples.h"
+
+// A sample at the shading point that is nearest to its cluster's centre. One thread per sample.
+
+layout(local_size_x = kSamplesGroupSize) in;
+
+layout(set = 1, binding = 0, scalar) readonly buffer Size { QueueSize size; };
+layout(set = 1, binding = 1, scalar) readonly buffer Occupied { uint occupied[]; };
+layout(set = 1, binding = 2, scalar) readonly buffer Sums { ClusterSums sums[]; };
+layout(set = 1, binding = 3, scalar) readonly buffer Points { SamplePoint points[]; };
+layout(set = 1, binding = 4, scalar) writeonly buffer Samples { Sample samples[]; };
+layout(set = 1, binding = 5, scalar) writeonly buffer Spheres { vec4 spheres[]; };
+
+// A cluster of radius rho has neighbours at 2 rho and the next ones at 4 rho: this far it overlaps both rings' halves.
+const float kSupportRadii = 3.0;
+
+void main()
+{
+    uint i = gl_GlobalInvocationID.x;
+    if (i >= size.count)
+        return;
+    ClusterSums s = sums[occupied[i]];
+    SamplePoint point = points[s.nearest];
+    float diagonal = length(scene.bounds_max - scene.bounds_min);
+    float support = clamp(kSupportRadii * sqrt(uintBitsToFloat(s.farthest2)), 1e-3 * diagonal, 0.1 * diagonal);
+    samples[i] = Sample(point.position, point.normal, vec3(0.0), support, 0.0, point.pixel);
+    spheres[i] = vec4(point.position, support);
+}
