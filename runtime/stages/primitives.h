@@ -1,0 +1,86 @@
+// Sort, scan, compaction: what stages build their lists with. Counts are made on the GPU and never read back.
+// Every one is a stage's member: it allocates its scratch in its constructor and borrows everything else.
+#pragma once
+#include "runtime/gpu/gpu.h"
+#include "shaders/primitives/primitives.h"
+
+#include <string_view>
+
+// In all of them `size` is a gpu::QueueSize whose .count the kernels read (its .groups is not looked at); a count above
+// max_count counts as max_count. Where work is divided, lower indices belong to lower workers, so that the results do
+// not depend on the order in which workers run: equal input gives equal bits.
+
+/// Who takes a share of a sort: a workgroup, which ranks tiles of pairs in shared memory, or a single thread, which is
+/// faster where threads run one after the other.
+enum class SortWorkers
+{
+    kGroups,
+    kThreads
+};
+
+/// What is faster on the device.
+SortWorkers sortWorkersOf(const Device& device);
+
+/// A stable radix sort of key-value pairs by the keys' lowest bits.
+class RadixSort
+{
+public:
+    /// @param key_words 1: uint keys, 2: uvec2 keys with the low word in x
+    RadixSort(const Device& device, std::string_view name, uint32_t max_count, uint32_t key_words = 1);
+    RadixSort(const Device& device, std::string_view name, uint32_t max_count, uint32_t key_words, SortWorkers workers);
+
+    /// Sorts keys[0, count) ascending by their lowest `key_bits` bits, stably, and values with them, in place.
+    /// @param keys uint[max_count] or uvec2[max_count]; higher bits may be anything and stay with their keys
+    /// @param values uint[max_count]
+    /// @param key_bits 1 to 32 * key_words; fewer bits take fewer passes
+    void record(Recorder& rec, const Buffer& keys, const Buffer& values, const Buffer& size, uint32_t key_bits) const;
+
+private:
+    struct Pairs
+    {
+        const Buffer& keys;
+        const Buffer& values;
+    };
+    void recordPass(Recorder& rec, const Pairs& from, const Pairs& to, const Buffer& size,
+                    const gpu::SortParams& params) const;
+
+    uint32_t max_count_, key_words_, worker_count_;
+    Kernel count_, offsets_, move_;
+    Buffer keys_, values_, counts_; // scratch
+};
+
+/// The exclusive prefix sum of uints, modulo 2^32.
+class Scan
+{
+public:
+    Scan(const Device& device, std::string_view name, uint32_t max_count);
+
+    /// sums[i] = values[0] + ... + values[i - 1] for i < count.
+    /// @param values, sums uint[max_count]; may be the same buffer
+    /// @param total uint that becomes the sum of all; not one of the others
+    void record(Recorder& rec, const Buffer& values, const Buffer& sums, const Buffer& total, const Buffer& size) const;
+
+private:
+    gpu::ScanParams params_;
+    Kernel sum_, scan_;
+    Buffer group_sums_;
+};
+
+/// The places of the flags that are set.
+class Compaction
+{
+public:
+    Compaction(const Device& device, std::string_view name, uint32_t max_count);
+
+    /// indices[0, n) become the i < count with flags[i] != 0, ascending.
+    /// @param flags uint[max_count], @param indices uint[max_count]; not the same buffer
+    /// @param selected gpu::QueueSize that becomes n, ready for indirect dispatch in groups of kRaysGroupSize threads;
+    ///        not `size` itself
+    void record(Recorder& rec, const Buffer& flags, const Buffer& indices, const Buffer& selected,
+                const Buffer& size) const;
+
+private:
+    gpu::ScanParams params_;
+    Kernel sum_, compact_;
+    Buffer group_sums_;
+};

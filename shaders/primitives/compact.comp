@@ -1,0 +1,44 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "shaders/primitives/primitives.h"
+
+// The indices of the flags that are set, in order, each workgroup's after those of the groups before.
+
+layout(local_size_x = kPrimitivesGroupSize) in;
+
+layout(push_constant, scalar) uniform Push { ScanParams params; };
+layout(set = 1, binding = 0, scalar) readonly buffer Size { QueueSize size; };
+layout(set = 1, binding = 1, scalar) readonly buffer Flags { uint flags[]; };
+layout(set = 1, binding = 2, scalar) readonly buffer GroupSums { uint group_sums[]; };
+layout(set = 1, binding = 3, scalar) writeonly buffer Indices { uint indices[]; };
+layout(set = 1, binding = 4, scalar) writeonly buffer Selected { QueueSize selected; };
+
+#include "shaders/primitives/group_scan.glsl"
+#include "shaders/primitives/share.glsl"
+
+void main()
+{
+    const uint count = min(size.count, params.max_count), share = shareOf(count, params.group_count, kScanTile);
+    const uint group = gl_WorkGroupID.x, begin = group * share, end = min(begin + share, count);
+    if (begin >= count && group > 0u)
+        return;
+    uint carry = 0u;
+    if (group > 0u)
+        groupExclusiveSum(gl_LocalInvocationIndex < group ? group_sums[gl_LocalInvocationIndex] : 0u, carry);
+    for (uint tile = begin; tile < end; tile += kScanTile)
+    {
+        const uint first = tile + gl_LocalInvocationIndex * kScanItems;
+        uint set = 0u, tile_sum; // a bit for each item
+        for (uint i = 0u; i < kScanItems; ++i)
+            if (first + i < end && flags[first + i] != 0u)
+                set |= 1u << i;
+        uint at = carry + groupExclusiveSum(bitCount(set), tile_sum);
+        for (uint i = 0u; i < kScanItems; ++i)
+            if ((set & (1u << i)) != 0u)
+                indices[at++] = first + i;
+        carry += tile_sum;
+    }
+    if (begin + share >= count && gl_LocalInvocationIndex == 0u)
+        selected = QueueSize(uvec3((carry + kRaysGroupSize - 1u) / kRaysGroupSize, 1u, 1u), carry);
+}

@@ -1,0 +1,52 @@
+// Sorting, scanning, compacting: what the stages build their lists with.
+// Shared by runtime/stages/primitives.cpp and shaders/primitives/*.comp.
+#ifndef SHADERS_PRIMITIVES_H
+#define SHADERS_PRIMITIVES_H
+#include "shaders/rays/rays.h"
+
+GPU_NAMESPACE_BEGIN
+
+GPU_CONST uint kPrimitivesGroupSize = 256u;
+GPU_CONST uint kMaxDigitBits = 8u;
+GPU_CONST uint kMaxDigits = 256u; // of kMaxDigitBits bits
+
+// Workgroups that share a tiled pass; no more than kPrimitivesGroupSize, so that a thread each can add up their sums.
+GPU_CONST uint kMaxTileGroups = 256u;
+GPU_CONST uint kScanItems = 8u; // per thread of a tile
+GPU_CONST uint kScanTile = 2048u;
+GPU_CONST uint kSortItems = 8u;
+GPU_CONST uint kSortTile = 2048u;
+GPU_CONST uint kSmallSortItems = 16u;
+GPU_CONST uint kSmallSort = 4096u; // pairs that one workgroup sorts
+
+// On a device that runs threads one after the other, every thread is a worker of its own.
+GPU_CONST uint kLanes = 8u; // threads of a workgroup; counters of all fill 8 KiB of shared memory
+GPU_CONST uint kMaxLaneGroups = 32u;
+GPU_CONST uint kLaneLeast = 512u; // pairs for which a further worker pays
+
+struct SortParams
+{
+    uint max_count;
+    uint first_bit;  // of the digit
+    uint digit_bits; // 1 to kMaxDigitBits
+    uint worker_count;
+};
+GPU_SIZE(SortParams, 16);
+
+struct SmallSortParams
+{
+    uint max_count;
+    uint key_bits;
+    uint digit_bits;
+};
+GPU_SIZE(SmallSortParams, 12);
+
+struct ScanParams
+{
+    uint max_count;
+    uint group_count;
+};
+GPU_SIZE(ScanParams, 8);
+
+GPU_NAMESPACE_END
+#endif

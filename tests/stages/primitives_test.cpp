@@ -1,0 +1,241 @@
+// Sort, scan and compaction against the standard library's, on every kind of input and on both sides of each limit.
+#include "runtime/stages/primitives.h"
+#include "tests/stages/gpu_test.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numeric>
+#include <random>
+
+namespace
+{
+constexpr uint32_t kUntouched = 0xabcdabcd;
+
+/// The same numbers in every run.
+std::vector<uint32_t> randomWords(size_t count, uint32_t seed)
+{
+    std::mt19937 engine(seed);
+    std::vector<uint32_t> words(count);
+    std::ranges::generate(words, engine);
+    return words;
+}
+
+class Primitives : public GpuTest
+{
+protected:
+    static Buffer sizeOf(uint32_t count)
+    {
+        const gpu::QueueSize size{.groups = {0, 0, 0}, .count = count};
+        return device().upload<gpu::QueueSize>("test.size", std::span(&size, 1));
+    }
+    static Buffer words(std::span<const uint32_t> data)
+    {
+        static constexpr uint32_t kNothing[1]{kUntouched};
+        return device().upload<uint32_t>("test.words", data.empty() ? kNothing : data);
+    }
+    static void submit(const std::function<void(Recorder&)>& record)
+    {
+        Recorder rec(device());
+        rec.begin(VK_NULL_HANDLE);
+        record(rec);
+        rec.submitAndWait();
+    }
+};
+
+// ---- Scan and compaction -------------------------------------------------------------------------------------------
+
+struct Lengths
+{
+    uint32_t max_count, count;
+};
+
+const Lengths kLengths[]{{1, 0},       {1, 1},           {2047, 2047},       {2048, 2048},           {2049, 2049},
+                         {4096, 2049}, {10007, 10007},   {10007, 1},         {1 << 20, 4099},        {1 << 20, 0},
+                         {300, 1000},  {524288, 524288}, {524289, 524289},   {(1 << 20) + 3, 1 << 20}, {1048579, 1048579}};
+
+class OfLength : public Primitives, public testing::WithParamInterface<Lengths>
+{
+protected:
+    // A queue may overflow on the GPU: the count says more than there is room for.
+    static uint32_t used() { return std::min(GetParam().count, GetParam().max_count); }
+};
+
+std::string nameOf(const testing::TestParamInfo<Lengths>& info)
+{
+    return fmt::format("{}Of{}", info.param.count, info.param.max_count);
+}
+
+TEST_P(OfLength, ScanAddsUpWhatComesBefore)
+{
+    const auto [max_count, count] = GetParam();
+    const std::vector<uint32_t> values = randomWords(max_count, 1); // the sums wrap around many times
+    const Buffer given = words(values), sums = device().array<uint32_t>("test.sums", max_count),
+                 total = device().array<uint32_t>("test.total", 1), size = sizeOf(count);
+    const Scan scan(device(), "test.scan", max_count);
+    submit(
+        [&](Recorder& rec)
+        {
+            rec.fill(sums, kUntouched);
+            rec.fill(total, kUntouched);
+            scan.record(rec, given, sums, total, size);
+        });
+    std::vector<uint32_t> expected(max_count, kUntouched);
+    std::exclusive_scan(values.begin(), values.begin() + used(), expected.begin(), 0u);
+    EXPECT_EQ(device().download<uint32_t>(sums, max_count), expected);
+    EXPECT_EQ(device().download<uint32_t>(total, 1)[0],
+              std::accumulate(values.begin(), values.begin() + used(), 0u));
+}
+
+TEST_P(OfLength, ScanMayReplaceItsValues)
+{
+    const auto [max_count, count] = GetParam();
+    std::vector<uint32_t> expected = randomWords(max_count, 2);
+    const Buffer values = words(expected), total = device().array<uint32_t>("test.total", 1), size = sizeOf(count);
+    const Scan scan(device(), "test.scan", max_count);
+    submit([&](Recorder& rec) { scan.record(rec, values, values, total, size); });
+    std::exclusive_scan(expected.begin(), expected.begin() + used(), expected.begin(), 0u);
+    EXPECT_EQ(device().download<uint32_t>(values, max_count), expected);
+}
+
+TEST_P(OfLength, CompactionKeepsTheFlaggedInOrder)
+{
+    const auto [max_count, count] = GetParam();
+    const Compaction compaction(device(), "test.compaction", max_count);
+    for (const uint32_t kept_of_16 : {0u, 1u, 8u, 16u})
+    {
+        SCOPED_TRACE(kept_of_16);
+        std::vector<uint32_t> flags = randomWords(max_count, 3);
+        for (uint32_t& flag : flags)
+            flag = flag % 16 < kept_of_16 ? flag | 1u << 31 : 0; // any value but 0 is set
+        const Buffer given = words(flags), indices = device().array<uint32_t>("test.indices", max_count),
+                     selected = device().array<gpu::QueueSize>("test.selected", 1), size = sizeOf(count);
+        submit(
+            [&](Recorder& rec)
+            {
+                rec.fill(indices, kUntouched);
+                rec.fill(selected, kUntouched);
+                compaction.record(rec, given, indices, selected, size);
+            });
+        std::vector<uint32_t> expected;
+        for (uint32_t i = 0; i < used(); ++i)
+            if (flags[i] != 0)
+                expected.push_back(i);
+        const uint32_t n = uint32_t(expected.size());
+        expected.resize(max_count, kUntouched);
+        EXPECT_EQ(device().download<uint32_t>(indices, max_count), expected);
+        const auto made = device().download<gpu::QueueSize>(selected, 1)[0];
+        EXPECT_EQ(made.count, n);
+        EXPECT_EQ(made.groups.x, uint32_t(std::ceil(n / double(gpu::kRaysGroupSize))));
+        EXPECT_EQ(made.groups.y, 1u);
+        EXPECT_EQ(made.groups.z, 1u);
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(, OfLength, testing::ValuesIn(kLengths), nameOf);
+
+// ---- Sort ----------------------------------------------------------------------------------------------------------
+
+struct SortCase
+{
+    const char* name;
+    uint32_t max_count, count, key_words, key_bits;
+};
+
+const SortCase kSorts[]{{"Nothing", 1000, 0, 1, 32},
+                        {"One", 1, 1, 1, 32},
+                        {"Two", 2, 2, 2, 64},
+                        {"FewOf30Bits", 4096, 4096, 1, 30},
+                        {"FewOf64Bits", 4096, 4093, 2, 64},
+                        {"FewOfTheirRoom", 100000, 300, 1, 32},
+                        {"MoreThanTheirRoom", 300, 1000, 1, 32},
+                        {"JustMoreThanFew", 4097, 4097, 1, 30},
+                        {"OneBit", 10007, 10007, 1, 1},
+                        {"FiveBits", 10007, 10007, 1, 5},
+                        {"PrimeOf17Bits", 10007, 10007, 1, 17},
+                        {"PrimeOf40Bits", 10007, 10007, 2, 40},
+                        {"PrimeOf63Bits", 65537, 65537, 2, 63},
+                        {"LowWordOnly", 65537, 65537, 2, 30},
+                        {"ManyOf30Bits", (1 << 20) + 3, (1 << 20) + 3, 1, 30},
+                        {"ManyOf32Bits", (1 << 20) + 3, (1 << 20) + 3, 1, 32},
+                        {"ManyOf64Bits", (1 << 18) + 3, (1 << 18) + 3, 2, 64},
+                        {"HalfOfTheirRoom", 1 << 18, 1 << 17, 1, 32}};
+
+class Sort : public Primitives, public testing::WithParamInterface<std::tuple<SortCase, SortWorkers>>
+{
+protected:
+    using Keys = std::vector<uint64_t>;
+
+    /// Sorts on both, and expects the very same order of keys, all of their bits, and of values.
+    static void expectSorted(const Keys& keys)
+    {
+        const auto& [c, workers] = GetParam();
+        std::vector<uint32_t> key_words;
+        for (const uint64_t key : keys)
+        {
+            key_words.push_back(uint32_t(key));
+            if (c.key_words > 1)
+                key_words.push_back(uint32_t(key >> 32));
+        }
+        std::vector<uint32_t> order(keys.size());
+        std::iota(order.begin(), order.end(), 0u);
+        const Buffer sorted_keys = words(key_words), sorted_values = words(order), size = sizeOf(c.count);
+        const RadixSort sort(device(), "test.sort", c.max_count, c.key_words, workers);
+        submit([&](Recorder& rec) { sort.record(rec, sorted_keys, sorted_values, size, c.key_bits); });
+
+        const uint64_t mask = ~0ull >> (64 - c.key_bits);
+        std::stable_sort(order.begin(), order.begin() + std::min(c.count, c.max_count),
+                         [&](uint32_t a, uint32_t b) { return (keys[a] & mask) < (keys[b] & mask); });
+        ASSERT_EQ(device().download<uint32_t>(sorted_values, keys.size()), order);
+        std::vector<uint32_t> expected_words;
+        for (const uint32_t i : order)
+            for (uint32_t word = 0; word < c.key_words; ++word)
+                expected_words.push_back(key_words[i * c.key_words + word]);
+        ASSERT_EQ(device().download<uint32_t>(sorted_keys, expected_words.size()), expected_words);
+    }
+
+    static Keys randomKeys()
+    {
+        const auto& c = std::get<0>(GetParam());
+        const std::vector<uint32_t> low = randomWords(c.max_count, 4), high = randomWords(c.max_count, 5);
+        Keys keys;
+        for (uint32_t i = 0; i < c.max_count; ++i)
+            keys.push_back(c.key_words > 1 ? uint64_t(high[i]) << 32 | low[i] : low[i]);
+        return keys;
+    }
+};
+
+TEST_P(Sort, OrdersRandomKeys)
+{
+    expectSorted(randomKeys());
+}
+
+TEST_P(Sort, LeavesEqualKeysInTheirOrder)
+{
+    Keys keys = randomKeys();
+    const uint64_t all = keys[0];
+    for (uint64_t& key : keys) // a few kinds of keys, then one
+        key = (key % 3) * (all | 1);
+    expectSorted(keys);
+    std::ranges::fill(keys, all);
+    expectSorted(keys);
+}
+
+TEST_P(Sort, OrdersSortedAndReversedKeys)
+{
+    Keys keys = randomKeys();
+    std::ranges::sort(keys);
+    expectSorted(keys);
+    std::ranges::reverse(keys);
+    expectSorted(keys);
+}
+
+INSTANTIATE_TEST_SUITE_P(, Sort,
+                         testing::Combine(testing::ValuesIn(kSorts),
+                                          testing::Values(SortWorkers::kGroups, SortWorkers::kThreads)),
+                         [](const auto& sort)
+                         {
+                             return fmt::format("{}By{}", std::get<0>(sort.param).name,
+                                                std::get<1>(sort.param) == SortWorkers::kGroups ? "Groups" : "Threads");
+                         });
+} // namespace
