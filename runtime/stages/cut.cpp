@@ -1,8 +1,8 @@
 #include "runtime/stages/cut.h"
 
 CutStage::CutStage(const Device& device, uint32_t max_photons)
-    : summarise_(device.kernel("cut/summarise")), level_mean_(device.kernel("cut/level_mean")),
-      threshold_kernel_(device.kernel("cut/threshold")), coarse_(device.kernel("cut/coarse")), select_(device.kernel("cut/select")),
+    : summarise_(device.kernel("cut/summarise", climbConstants(device))), level_mean_(device.kernel("cut/level_mean")),
+      threshold_kernel_(device.kernel("cut/threshold")), coarse_(device.kernel("cut/coarse", climbConstants(device))), select_(device.kernel("cut/select")),
       refine_(device.kernel("cut/refine")), collect_(device.kernel("cut/collect")), reorder_(device.kernel("cut/reorder")),
       compaction_(device, "cut.compaction", 2 * max_photons), tree_(device, "cut.tree", max_photons),
       sums_(device.array<gpu::PhotonSums>("cut.sums", max_photons)), arrivals_(device.array<uint32_t>("cut.arrivals", max_photons)),
@@ -33,14 +33,14 @@ CutStage::Output CutStage::record(Recorder& rec, const RayStage& rays, const Pho
                     {{"Size", map.size}, {"TreeNodes", tree_nodes}, {"Photons", map.photons}, {"LeafParents", leaf_parents},
                      {"NodeParents", node_parents}, {"Sums", sums_}, {"Arrivals", arrivals_}});
     rec.run(level_mean_, gpu::kPartialMeans * gpu::kPartialGroupSize, NoParams{},
-            {{"Size", map.size}, {"TreeNodes", tree_nodes}, {"Photons", map.photons}, {"NodeParents", node_parents}, {"Sums", sums_},
+            {{"Size", map.size}, {"TreeNodes", tree_nodes}, {"NodeParents", node_parents}, {"Sums", sums_},
              {"Partials", partials_}});
     rec.run(threshold_kernel_, 1, NoParams{},
             {{"Size", map.size}, {"Partials", partials_}, {"Threshold", threshold_}, {"Ids", id_count_}});
     rec.clear(arrivals_);
     rec.clear(divided_);
     rec.runIndirect(coarse_, map.size, 0, params,
-                    {{"Size", map.size}, {"TreeNodes", tree_nodes}, {"Photons", map.photons}, {"LeafParents", leaf_parents},
+                    {{"Size", map.size}, {"TreeNodes", tree_nodes}, {"LeafParents", leaf_parents},
                      {"NodeParents", node_parents}, {"Sums", sums_}, {"Threshold", threshold_}, {"Divided", divided_},
                      {"Arrivals", arrivals_}});
 

@@ -1,7 +1,12 @@
 #include "runtime/stages/tree.h"
 
+std::array<uint32_t, 1> climbConstants(const Device& device)
+{
+    return {device.isCpu() ? 0u : 1u};
+}
+
 Tree::Tree(const Device& device, std::string_view name, uint32_t max_count)
-    : keys_kernel_(device.kernel("tree/keys")), hierarchy_(device.kernel("tree/hierarchy")), bounds_(device.kernel("tree/bounds")),
+    : keys_kernel_(device.kernel("tree/keys")), hierarchy_(device.kernel("tree/hierarchy")), bounds_(device.kernel("tree/bounds", climbConstants(device))),
       sort_(device, fmt::format("{}.sort", name), max_count), keys_(device.array<uint32_t>(fmt::format("{}.keys", name), max_count)),
       order_(device.array<uint32_t>(fmt::format("{}.order", name), max_count)),
       nodes_(device.array<gpu::TreeNode>(fmt::format("{}.nodes", name), max_count)),

@@ -5,6 +5,11 @@
 #include "runtime/stages/primitives.h"
 #include "shaders/tree/tree.h"
 
+#include <array>
+
+/// Specialization constants of kernels that climb a tree (lib/climb.glsl).
+std::array<uint32_t, 1> climbConstants(const Device& device);
+
 class Tree
 {
 public:

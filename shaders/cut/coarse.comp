@@ -2,6 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "shaders/cut/cut.h"
+#include "shaders/lib/climb.glsl"
 
 // The coarse cut, bottom-up: a node is divided where both its children are candidates (E~ > E_min), where something below
 // it is, and where E~ would mean nothing. What is not divided, but below a divided node, is the cut: every photon then has
@@ -51,10 +52,10 @@ void main()
     while (true)
     {
         uint node = link & ~kTreeLeafBit;
-        memoryBarrierBuffer();
+        fence();
         if (atomicAdd(arrivals[node], 1u) == 0u)
             return;
-        memoryBarrierBuffer();
+        fence();
         divided[node] = uint(shouldDivide(node));
         if (node == 0u)
             return;

@@ -2,6 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "shaders/cut/cut.h"
+#include "shaders/lib/climb.glsl"
 
 // Power, normal and position sums of every inner node, from the photons up: whoever arrives second at a node goes on with
 // it. Two summands a node: their order does not matter. One thread per photon.
@@ -27,10 +28,10 @@ void main()
     while (true)
     {
         uint node = link & ~kTreeLeafBit;
-        memoryBarrierBuffer();
+        fence();
         if (atomicAdd(arrivals[node], 1u) == 0u)
             return;
-        memoryBarrierBuffer();
+        fence();
         uint sibling = (link & kTreeLeafBit) != 0u ? tree_nodes[node].left : tree_nodes[node].right;
         uint index = sibling & ~kTreeLeafBit;
         PhotonSums other;

@@ -1,6 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
+#include "shaders/lib/climb.glsl"
 #include "shaders/rays/rays.h"
 #include "shaders/tree/tree.h"
 
@@ -38,10 +39,10 @@ void main()
             nodes[node].right_min = low;
             nodes[node].right_max = high;
         }
-        memoryBarrierBuffer();
+        fence();
         if (atomicAdd(arrivals[node], 1u) == 0u || node == 0u)
             return;
-        memoryBarrierBuffer();
+        fence();
         low = min(nodes[node].left_min, nodes[node].right_min);
         high = max(nodes[node].left_max, nodes[node].right_max);
         link = node_parents[node];
