@@ -1,5 +1,7 @@
 #include "runtime/settings.h"
 
+#include "shaders/lib/terms.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,6 +17,9 @@ constexpr std::array kKnobs{
     Knob{"specular_depth", &Settings::specular_depth, 0, 64, "", "mirror and glass events followed from the eye"},
     Knob{"direct_samples", &Settings::direct_samples, 1, 64, "", "shadow rays a pixel and frame"},
     Knob{"reference_depth", &Settings::reference_depth, 1, 1024, "", "most vertices of a path of the reference"},
+    Knob{"term", &Settings::term, gpu::kTermAll, gpu::kTermGlossy, "",
+         "light paths shown in mode reference; the others sum to all",
+         "all,emission,direct,caustics,indirect,glossy"},
     Knob{"exposure", &Settings::exposure, -20, 20, "stops", "brightness of the display; EXR files stay linear"},
     Knob{"tonemap", &Settings::tonemap, 0, 2, "", "display transform", "srgb,aces,agx"},
 };

@@ -13,6 +13,7 @@ struct Settings
     uint32_t specular_depth = 8;
     uint32_t direct_samples = 1;
     uint32_t reference_depth = 64;
+    uint32_t term = 0; // gpu::kTerm*
     float exposure = 0;
     uint32_t tonemap = 2; // Tonemap
 };
