@@ -25,12 +25,18 @@ Counted countedFor(uint32_t term)
     constexpr uint32_t kSpecular = 1u << gpu::kStageSpecular, kDeep = 1u << gpu::kStageDeep;
     switch (term)
     {
-    case gpu::kTermEmission: return {.stages = kEye, .lobes = gpu::kLobesBoth};
-    case gpu::kTermDirect: return {.stages = kLeft, .lobes = gpu::kLobesBoth};
-    case gpu::kTermCaustics: return {.stages = kSpecular, .lobes = gpu::kLobeDiffuse};
-    case gpu::kTermIndirect: return {.stages = kDeep, .lobes = gpu::kLobeDiffuse};
-    case gpu::kTermGlossy: return {.stages = kSpecular | kDeep, .lobes = gpu::kLobeSpecular};
-    default: check(term == gpu::kTermAll, "term {} is unknown", term);
+    case gpu::kTermEmission:
+        return {.stages = kEye, .lobes = gpu::kLobesBoth};
+    case gpu::kTermDirect:
+        return {.stages = kLeft, .lobes = gpu::kLobesBoth};
+    case gpu::kTermCaustics:
+        return {.stages = kSpecular, .lobes = gpu::kLobeDiffuse};
+    case gpu::kTermIndirect:
+        return {.stages = kDeep, .lobes = gpu::kLobeDiffuse};
+    case gpu::kTermGlossy:
+        return {.stages = kSpecular | kDeep, .lobes = gpu::kLobeSpecular};
+    default:
+        check(term == gpu::kTermAll, "term {} is unknown", term);
     }
     return {.stages = kEye | kLeft | kSpecular | kDeep, .lobes = gpu::kLobesBoth};
 }

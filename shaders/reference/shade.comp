@@ -44,6 +44,9 @@ uint stageAfter(uint stage, bool delta)
     return stage == kStageEye ? kStageLeft : kStageDeep;
 }
 
+/// What light found now is worth to the picture.
+vec3 countedThroughput(PathState state) { return state.throughput * state.share; }
+
 /// What part of the sample's weight went through the lobes that count.
 vec3 countingShare(BsdfSample next)
 {
@@ -81,7 +84,7 @@ void sendShadowRay(Surface s, Bsdf b, mat3 frame, vec3 wo, PathState state, uint
     if (!counts(stageAfter(state.stage, false)))
         return;
     BsdfValue f = evaluateBsdf(b, wo, wi);
-    vec3 carried = state.throughput * (f.diffuse + f.specular) * abs(wi.z) * light.weight * state.share;
+    vec3 carried = countedThroughput(state) * (f.diffuse + f.specular) * abs(wi.z) * light.weight;
     if (light.pdf > 0.0)
         carried *= misWeight(light.pdf, f.pdf);
     if (carried == vec3(0.0))
@@ -135,7 +138,7 @@ void main()
     PathState state = loadState(path);
     if (hit.slot == kNone)
     {
-        vec3 light = state.throughput * environmentRadiance(direction) * state.share;
+        vec3 light = countedThroughput(state) * environmentRadiance(direction);
         add(path, state.pdf == 0.0 ? light : light * misWeight(state.pdf, environmentPdf(direction)), state.stage);
         return;
     }
@@ -146,10 +149,10 @@ void main()
     state.travelled += hit.t;
     if ((m.flags & kMaterialUnlit) != 0u) // a picture of itself for the eye, black for everything else
     {
-        add(path, state.stage == kStageEye ? state.throughput * m.base_color : vec3(0.0), state.stage);
+        add(path, state.stage == kStageEye ? countedThroughput(state) * m.base_color : vec3(0.0), state.stage);
         return;
     }
-    add(path, state.throughput * emittedLight(s, m, direction, state) * state.share, state.stage);
+    add(path, countedThroughput(state) * emittedLight(s, m, direction, state), state.stage);
     if (params.depth + 1u >= params.depth_limit)
         return;
 
