@@ -59,7 +59,8 @@ void Renderer::record(Recorder& rec, const Camera& camera, const Settings& setti
 
     if (reference_)
     {
-        const Buffer& radiance = reference_->record(rec, rays_, {.camera = view, .depth_limit = settings.reference_depth});
+        const Buffer& radiance = reference_->record(
+            rec, rays_, {.camera = view, .depth_limit = settings.reference_depth, .term = settings.term});
         resolve_.accumulate(rec, radiance, pixel_count, sample_count);
         return;
     }

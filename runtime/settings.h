@@ -28,6 +28,7 @@ struct Settings
     uint32_t caustic_density_photons = 200;
     float caustic_radius = 0.05f; // of the scene's diagonal
     uint32_t reference_depth = 64;
+    uint32_t term = 0; // gpu::kTerm*
     float exposure = 0;
     uint32_t tonemap = 2; // Tonemap
 };

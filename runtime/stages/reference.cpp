@@ -12,6 +12,36 @@ ReferenceStage::ReferenceStage(const Device& device, const SceneGpu& scene, uint
 {
 }
 
+namespace
+{
+struct Counted
+{
+    uint32_t stages, lobes; // as in ShadeParams
+};
+
+Counted countedFor(uint32_t term)
+{
+    constexpr uint32_t kEye = 1u << gpu::kStageEye, kLeft = 1u << gpu::kStageLeft;
+    constexpr uint32_t kSpecular = 1u << gpu::kStageSpecular, kDeep = 1u << gpu::kStageDeep;
+    switch (term)
+    {
+    case gpu::kTermEmission:
+        return {.stages = kEye, .lobes = gpu::kLobesBoth};
+    case gpu::kTermDirect:
+        return {.stages = kLeft, .lobes = gpu::kLobesBoth};
+    case gpu::kTermCaustics:
+        return {.stages = kSpecular, .lobes = gpu::kLobeDiffuse};
+    case gpu::kTermIndirect:
+        return {.stages = kDeep, .lobes = gpu::kLobeDiffuse};
+    case gpu::kTermGlossy:
+        return {.stages = kSpecular | kDeep, .lobes = gpu::kLobeSpecular};
+    default:
+        check(term == gpu::kTermAll, "term {} is unknown", term);
+    }
+    return {.stages = kEye | kLeft | kSpecular | kDeep, .lobes = gpu::kLobesBoth};
+}
+} // namespace
+
 const Buffer& ReferenceStage::record(Recorder& rec, const RayStage& rays, const Input& in) const
 {
     const auto scope = rec.scope("reference");
@@ -20,6 +50,7 @@ const Buffer& ReferenceStage::record(Recorder& rec, const RayStage& rays, const 
     rays.resize(rec, queue_.size, path_count);
     rec.run(generate_, path_count, in.camera, {{"Rays", queue_.rays}});
 
+    const Counted counted = countedFor(in.term);
     const RayQueue* queue = &queue_;
     const RayQueue* next = &next_queue_;
     for (uint32_t depth = 0; depth < in.depth_limit; ++depth)
@@ -28,7 +59,9 @@ const Buffer& ReferenceStage::record(Recorder& rec, const RayStage& rays, const 
                                       .depth_limit = in.depth_limit,
                                       .pixel_count = pixel_count,
                                       .first_sample = in.camera.first_sample,
-                                      .seed = in.camera.seed};
+                                      .seed = in.camera.seed,
+                                      .stages = counted.stages,
+                                      .lobes = counted.lobes};
         {
             const auto trace = rec.scope("reference.closest");
             rays.closest(rec, *queue, hits_, traceSeed(in.camera.seed, in.camera.first_sample, depth));

@@ -38,11 +38,10 @@ void main()
     vec3 wi = light.wi * frame;
     if (light.weight != vec3(0.0) && sidesAgree(s, light.wi, wi.z))
     {
-        float pdf;
-        vec3 f = evaluateBsdf(b, wo, wi, pdf);
-        vec3 carried = throughput * f * abs(wi.z) * light.weight;
+        BsdfValue f = evaluateBsdf(b, wo, wi);
+        vec3 carried = throughput * (f.diffuse + f.specular) * abs(wi.z) * light.weight;
         if (light.pdf > 0.0)
-            carried *= misWeight(light.pdf, pdf);
+            carried *= misWeight(light.pdf, f.pdf);
         if (carried != vec3(0.0))
             shadow_rays[atomicAdd(shadow_queue.count, 1u)] = ShadowRay(shadowRay(s, light, path), carried);
     }

@@ -23,6 +23,7 @@ struct BsdfSample
 {
     vec3 wi;     // local; below the surface for transmission
     vec3 weight; // f |cos| / pdf; zero: absorbed
+    vec3 diffuse_weight; // the diffuse lobe's part of it
     float pdf;   // per steradian, 0 for a delta lobe
     bool passed; // went straight through a thin smooth wall: not a scattering event
 };
@@ -162,48 +163,62 @@ float visibleNormalPdf(vec3 wo, vec3 h, float alpha)
 
 // ---- Evaluation --------------------------------------------------------------------------------------------------------
 
-/// f of all lobes that are not delta (1/sr) and the probability density with which sampleBsdf would choose wi.
-vec3 evaluateBsdf(Bsdf b, vec3 wo, vec3 wi, out float pdf)
+struct BsdfValue // towards one direction; the BSDF is the sum of both lobes
 {
-    LobeProbabilities p = lobeProbabilities(b, wo.z);
+    vec3 diffuse;  // f, 1/sr
+    vec3 specular; // f of reflection and transmission, 1/sr; 0 where they are delta
+    float pdf;     // per steradian, with which sampleBsdf would choose the direction through any of them
+};
+
+/// GGX reflection, and a thin wall's transmission, which is the same lobe on the other side.
+void addReflection(Bsdf b, LobeProbabilities p, vec3 wo, vec3 wi, inout BsdfValue value)
+{
     bool reflected = wi.z > 0.0;
-    vec3 mirrored = vec3(wi.xy, abs(wi.z)); // a thin wall transmits as it reflects, on the other side
-    vec3 f = vec3(0.0);
-    pdf = 0.0;
-    if (wi.z == 0.0)
-        return f;
-    if (reflected)
-    {
-        vec3 h = normalize(wo + wi);
-        f = belowColor(b, dot(wo, h)) * (1.0 - b.transmission) * kInvPi;
-        pdf = p.diffuse * wi.z * kInvPi;
-    }
-    if (!hasFeature(kFeatureSpecular) || b.smooth_specular)
-        return f;
-    if (reflected || b.thin)
-    {
-        vec3 h = normalize(wo + mirrored);
-        float cosine = dot(wo, h);
-        float g = ggxMasking(wo.z, b.alpha) * ggxMasking(mirrored.z, b.alpha);
-        float lobe = ggxDistribution(h, b.alpha) * g / (4.0 * wo.z * mirrored.z);
-        f += lobe * (reflected ? reflectionColor(b, cosine) : belowColor(b, cosine) * b.transmission);
-        pdf += (reflected ? p.reflection : p.transmission) * visibleNormalPdf(wo, h, b.alpha) / (4.0 * cosine);
-        return f;
-    }
-    if (!hasFeature(kFeatureTransmission) || b.transmission == 0.0)
-        return f;
+    vec3 mirrored = vec3(wi.xy, abs(wi.z));
+    vec3 h = normalize(wo + mirrored);
+    float cosine = dot(wo, h);
+    float g = ggxMasking(wo.z, b.alpha) * ggxMasking(mirrored.z, b.alpha);
+    float lobe = ggxDistribution(h, b.alpha) * g / (4.0 * wo.z * mirrored.z);
+    value.specular = lobe * (reflected ? reflectionColor(b, cosine) : belowColor(b, cosine) * b.transmission);
+    value.pdf += (reflected ? p.reflection : p.transmission) * visibleNormalPdf(wo, h, b.alpha) / (4.0 * cosine);
+}
+
+/// GGX refraction into what lies behind the surface.
+void addRefraction(Bsdf b, LobeProbabilities p, vec3 wo, vec3 wi, inout BsdfValue value)
+{
     vec3 h = normalize(wo + b.eta * wi);
     h = h.z < 0.0 ? -h : h;
     float cos_o = dot(wo, h), cos_i = dot(wi, h);
     if (cos_o <= 0.0 || cos_i >= 0.0)
-        return f;
+        return;
     float denominator = square(cos_o + b.eta * cos_i);
     float g = ggxMasking(wo.z, b.alpha) * ggxMasking(-wi.z, b.alpha);
     // Walter et al. 2007, eq. 21, for radiance arriving from behind (eta^2 of eq. 21 cancels against the index ratio).
-    f = belowColor(b, cos_o) * b.transmission * ggxDistribution(h, b.alpha) * g * abs(cos_o * cos_i) /
-        (abs(wo.z * wi.z) * denominator);
-    pdf = p.transmission * visibleNormalPdf(wo, h, b.alpha) * abs(cos_i) * b.eta * b.eta / denominator;
-    return f;
+    value.specular = belowColor(b, cos_o) * b.transmission * ggxDistribution(h, b.alpha) * g * abs(cos_o * cos_i) /
+                     (abs(wo.z * wi.z) * denominator);
+    value.pdf = p.transmission * visibleNormalPdf(wo, h, b.alpha) * abs(cos_i) * b.eta * b.eta / denominator;
+}
+
+/// All lobes that are not delta.
+BsdfValue evaluateBsdf(Bsdf b, vec3 wo, vec3 wi)
+{
+    BsdfValue value = BsdfValue(vec3(0.0), vec3(0.0), 0.0);
+    if (wi.z == 0.0)
+        return value;
+    LobeProbabilities p = lobeProbabilities(b, wo.z);
+    if (wi.z > 0.0)
+    {
+        vec3 h = normalize(wo + wi);
+        value.diffuse = belowColor(b, dot(wo, h)) * (1.0 - b.transmission) * kInvPi;
+        value.pdf = p.diffuse * wi.z * kInvPi;
+    }
+    if (!hasFeature(kFeatureSpecular) || b.smooth_specular)
+        return value;
+    if (wi.z > 0.0 || b.thin)
+        addReflection(b, p, wo, wi, value);
+    else if (hasFeature(kFeatureTransmission) && b.transmission > 0.0)
+        addRefraction(b, p, wo, wi, value);
+    return value;
 }
 
 // ---- Sampling ----------------------------------------------------------------------------------------------------------
@@ -211,21 +226,21 @@ vec3 evaluateBsdf(Bsdf b, vec3 wo, vec3 wi, out float pdf)
 BsdfSample deltaSample(Bsdf b, LobeProbabilities p, vec3 wo, bool reflect_it)
 {
     if (reflect_it)
-        return BsdfSample(vec3(-wo.xy, wo.z), reflectionColor(b, wo.z) / p.reflection, 0.0, false);
+        return BsdfSample(vec3(-wo.xy, wo.z), reflectionColor(b, wo.z) / p.reflection, vec3(0.0), 0.0, false);
     vec3 weight = belowColor(b, wo.z) * b.transmission / p.transmission;
     if (b.thin)
-        return BsdfSample(-wo, weight, 0.0, true);
+        return BsdfSample(-wo, weight, vec3(0.0), 0.0, true);
     float sin2_t = (1.0 - wo.z * wo.z) / (b.eta * b.eta);
     if (sin2_t >= 1.0) // total internal reflection has no transmission; belowColor is 0 there
-        return BsdfSample(-wo, vec3(0.0), 0.0, false);
+        return BsdfSample(-wo, vec3(0.0), vec3(0.0), 0.0, false);
     // Radiance is squeezed into a smaller solid angle in the denser medium: (n_viewer / n_behind)^2.
-    return BsdfSample(vec3(-wo.xy / b.eta, -sqrt(1.0 - sin2_t)), weight / (b.eta * b.eta), 0.0, false);
+    return BsdfSample(vec3(-wo.xy / b.eta, -sqrt(1.0 - sin2_t)), weight / (b.eta * b.eta), vec3(0.0), 0.0, false);
 }
 
 /// Chooses a direction. @param choice picks the lobe, @param u the direction within it
 BsdfSample sampleBsdf(Bsdf b, vec3 wo, float choice, vec2 u)
 {
-    const BsdfSample kAbsorbed = BsdfSample(vec3(0.0, 0.0, 1.0), vec3(0.0), 0.0, false);
+    const BsdfSample kAbsorbed = BsdfSample(vec3(0.0, 0.0, 1.0), vec3(0.0), vec3(0.0), 0.0, false);
     LobeProbabilities p = lobeProbabilities(b, wo.z);
     if (p.reflection + p.diffuse + p.transmission == 0.0)
         return kAbsorbed;
@@ -257,9 +272,11 @@ BsdfSample sampleBsdf(Bsdf b, vec3 wo, float choice, vec2 u)
                 return kAbsorbed;
         }
     }
-    float pdf;
-    vec3 f = evaluateBsdf(b, wo, wi, pdf);
-    return pdf > 0.0 ? BsdfSample(wi, f * abs(wi.z) / pdf, pdf, false) : kAbsorbed;
+    BsdfValue f = evaluateBsdf(b, wo, wi);
+    if (f.pdf <= 0.0)
+        return kAbsorbed;
+    vec3 diffuse_weight = f.diffuse * abs(wi.z) / f.pdf;
+    return BsdfSample(wi, (f.diffuse + f.specular) * abs(wi.z) / f.pdf, diffuse_weight, f.pdf, false);
 }
 
 /// Whether any lobe can be evaluated for a given direction, that is: whether light sampling makes sense.

@@ -8,6 +8,8 @@
 // One vertex of every path: adds what it emits, sends a shadow ray to one light, chooses the next direction.
 // One thread per ray of the queue. Unbiased: next-event estimation and BSDF sampling combined by multiple importance
 // sampling (Veach & Guibas 1995), Russian roulette, no clamping.
+// Whatever counts, a path takes the same way with the same random numbers as long as some of its light may still count:
+// pictures of single terms sum to the picture of all.
 
 layout(local_size_x = kRaysGroupSize) in;
 layout(push_constant, scalar) uniform Params { ShadeParams params; };
@@ -27,12 +29,34 @@ const uint kRouletteDepth = 3u; // vertices that are always continued
 PathState loadState(uint path)
 {
     if (params.depth == 0u)
-        return PathState(vec3(1.0), 0.0, 0.0, kNone, 1u);
+        return PathState(vec3(1.0), vec3(1.0), 0.0, 0.0, kNone, kStageEye);
     return states[path];
 }
 
-void add(uint path, vec3 light)
+bool counts(uint stage) { return (params.stages >> stage & 1u) != 0u; }
+bool mayStillCount(uint stage) { return params.stages >> stage != 0u; }
+
+/// A path's stage after a scattering vertex.
+uint stageAfter(uint stage, bool delta)
 {
+    if (delta)
+        return stage == kStageLeft ? kStageSpecular : stage;
+    return stage == kStageEye ? kStageLeft : kStageDeep;
+}
+
+/// What light found now is worth to the picture.
+vec3 countedThroughput(PathState state) { return state.throughput * state.share; }
+
+/// What part of the sample's weight went through the lobes that count.
+vec3 countingShare(BsdfSample next)
+{
+    vec3 part = params.lobes == kLobeDiffuse ? next.diffuse_weight : next.weight - next.diffuse_weight;
+    return params.lobes == kLobesBoth ? vec3(1.0) : part / max(next.weight, vec3(1e-30));
+}
+
+void add(uint path, vec3 found, uint stage)
+{
+    vec3 light = counts(stage) ? found : vec3(0.0);
     if (params.depth == 0u)
         radiance[path] = light; // the first vertex starts the sum
     else if (light != vec3(0.0))
@@ -57,11 +81,12 @@ void sendShadowRay(Surface s, Bsdf b, mat3 frame, vec3 wo, PathState state, uint
     vec3 wi = light.wi * frame;
     if (light.weight == vec3(0.0) || !hasDensity(b) || !sidesAgree(s, light.wi, wi.z))
         return;
-    float pdf;
-    vec3 f = evaluateBsdf(b, wo, wi, pdf);
-    vec3 carried = state.throughput * f * abs(wi.z) * light.weight;
+    if (!counts(stageAfter(state.stage, false)))
+        return;
+    BsdfValue f = evaluateBsdf(b, wo, wi);
+    vec3 carried = countedThroughput(state) * (f.diffuse + f.specular) * abs(wi.z) * light.weight;
     if (light.pdf > 0.0)
-        carried *= misWeight(light.pdf, pdf);
+        carried *= misWeight(light.pdf, f.pdf);
     if (carried == vec3(0.0))
         return;
     shadow_rays[atomicAdd(shadow_queue.count, 1u)] = ShadowRay(shadowRay(s, light, path), carried);
@@ -89,8 +114,13 @@ void continuePath(Surface s, SurfaceMaterial m, Bsdf b, mat3 frame, vec3 wo, Pat
     }
     if (!next.passed)
     {
+        uint stage = stageAfter(state.stage, next.pdf == 0.0);
+        if (state.stage == kStageEye && stage == kStageLeft)
+            state.share = countingShare(next);
+        if (!mayStillCount(stage) || state.share == vec3(0.0))
+            return;
+        state.stage = stage;
         state.pdf = next.pdf;
-        state.from_eye &= uint(next.pdf == 0.0);
         state.travelled = 0.0;
     }
     states[path] = state;
@@ -108,8 +138,8 @@ void main()
     PathState state = loadState(path);
     if (hit.slot == kNone)
     {
-        vec3 light = state.throughput * environmentRadiance(direction);
-        add(path, state.pdf == 0.0 ? light : light * misWeight(state.pdf, environmentPdf(direction)));
+        vec3 light = countedThroughput(state) * environmentRadiance(direction);
+        add(path, state.pdf == 0.0 ? light : light * misWeight(state.pdf, environmentPdf(direction)), state.stage);
         return;
     }
 
@@ -119,10 +149,10 @@ void main()
     state.travelled += hit.t;
     if ((m.flags & kMaterialUnlit) != 0u) // a picture of itself for the eye, black for everything else
     {
-        add(path, state.from_eye == 1u ? state.throughput * m.base_color : vec3(0.0));
+        add(path, state.stage == kStageEye ? countedThroughput(state) * m.base_color : vec3(0.0), state.stage);
         return;
     }
-    add(path, state.throughput * emittedLight(s, m, direction, state));
+    add(path, countedThroughput(state) * emittedLight(s, m, direction, state), state.stage);
     if (params.depth + 1u >= params.depth_limit)
         return;
 

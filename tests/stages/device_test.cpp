@@ -1,6 +1,7 @@
 // The choice of a device and the knobs of the command line: what is picked, and what the refusals say.
 #include "runtime/gpu/instance.h"
 #include "runtime/settings.h"
+#include "shaders/lib/terms.h"
 
 #include <gtest/gtest.h>
 
@@ -153,6 +154,13 @@ TEST(ApplySetting, ReachesEveryKnobFromItsLeastToItsMost)
     {
         ASSERT_TRUE(applySetting(settings, fmt::format("tonemap={}", name)));
         EXPECT_EQ(settings.tonemap, value) << name;
+    }
+    for (const auto& [name, value] : {std::pair("all", gpu::kTermAll), std::pair("emission", gpu::kTermEmission),
+                                      std::pair("direct", gpu::kTermDirect), std::pair("caustics", gpu::kTermCaustics),
+                                      std::pair("indirect", gpu::kTermIndirect), std::pair("glossy", gpu::kTermGlossy)})
+    {
+        ASSERT_TRUE(applySetting(settings, fmt::format("term={}", name)));
+        EXPECT_EQ(settings.term, value) << name;
     }
 }
 
