@@ -24,5 +24,5 @@ vec3 irradianceAt(vec3 x, vec3 n)
 {
     return estimateIrradiance(x, n, size.count, params.photon_count, params.radius * params.radius).irradiance;
 }
-#include "shaders/gather/link.glsl"
+#include "shaders/lib/gather_link.glsl"
 #include "shaders/gather/link_body.glsl"
