@@ -12,10 +12,25 @@ uint32_t dividedUp(uint32_t count, uint32_t by)
     return count / by + (count % by > 0);
 }
 
-gpu::ScanParams scanParams(uint32_t max_count)
+gpu::ScanParams scanParams(const Device& device, uint32_t max_count)
 {
-    const uint32_t tiles = std::max(dividedUp(max_count, gpu::kScanTile), 1u);
-    return {.max_count = max_count, .group_count = std::min(tiles, gpu::kMaxTileGroups)};
+    const uint32_t least = device.isCpu() ? gpu::kLongScanTile : gpu::kScanTile;
+    return {.max_count = max_count,
+            .group_count = std::clamp(dividedUp(max_count, least), 1u, gpu::kMaxScanGroups),
+            .least_share = least};
+}
+
+/// Where threads run one after the other, the fewest steps of the whole group are the fastest.
+std::array<uint32_t, 1> scanConstants(const Device& device)
+{
+    return {device.isCpu() ? 0 : gpu::kScanItems};
+}
+
+uint32_t sortWorkerCount(uint32_t max_count, SortWorkers workers)
+{
+    if (workers == SortWorkers::kGroups)
+        return std::clamp(dividedUp(max_count, gpu::kSortTile), 1u, gpu::kMaxSortGroups);
+    return gpu::kLanes * std::clamp(dividedUp(max_count, gpu::kLanes * gpu::kLaneLeast), 1u, gpu::kMaxLaneGroups);
 }
 
 /// Leaves out what only later groups read where there are none.
@@ -38,25 +53,38 @@ RadixSort::RadixSort(const Device& device, std::string_view name, uint32_t max_c
 {
 }
 
-RadixSort::RadixSort(const Device& device, std::string_view name, uint32_t max_count, uint32_t key_words, SortWorkers)
-    : max_count_(max_count), key_words_(key_words),
-      worker_count_(gpu::kLanes *
-                    std::clamp(dividedUp(max_count, gpu::kLanes * gpu::kLaneLeast), 1u, gpu::kMaxLaneGroups)),
-      count_(device.kernel("primitives/lane_count", std::array{key_words})),
-      offsets_(device.kernel("primitives/lane_offsets")),
-      move_(device.kernel("primitives/lane_move", std::array{key_words})),
-      keys_(device.array<uint32_t>(fmt::format("{}.keys", name), uint64_t(max_count) * key_words)),
-      values_(device.array<uint32_t>(fmt::format("{}.values", name), max_count)),
-      counts_(device.array<uint32_t>(fmt::format("{}.counts", name), uint64_t(worker_count_) * gpu::kMaxDigits))
+RadixSort::RadixSort(const Device& device, std::string_view name, uint32_t max_count, uint32_t key_words,
+                     SortWorkers workers)
+    : max_count_(max_count), key_words_(key_words), worker_count_(sortWorkerCount(max_count, workers)), workers_(workers),
+      in_one_group_(workers == SortWorkers::kGroups && max_count <= gpu::kSmallSort)
 {
     check(key_words == 1 || key_words == 2, "{}: keys of {} words", name, key_words);
+    const std::array constants{key_words};
+    if (in_one_group_)
+    {
+        small_ = device.kernel("primitives/sort_small", constants);
+        return;
+    }
+    const std::string kind = workers == SortWorkers::kGroups ? "primitives/sort_" : "primitives/lane_";
+    count_ = device.kernel(kind + "count", constants);
+    offsets_ = device.kernel(kind + "offsets");
+    move_ = device.kernel(kind + "move", constants);
+    keys_ = device.array<uint32_t>(fmt::format("{}.keys", name), uint64_t(max_count) * key_words);
+    values_ = device.array<uint32_t>(fmt::format("{}.values", name), max_count);
+    counts_ = device.array<uint32_t>(fmt::format("{}.counts", name), uint64_t(worker_count_) * gpu::kMaxDigits);
+    totals_ = device.array<uint32_t>(fmt::format("{}.totals", name), gpu::kMaxDigits);
 }
 
 void RadixSort::record(Recorder& rec, const Buffer& keys, const Buffer& values, const Buffer& size,
                        uint32_t key_bits) const
 {
-    check(key_bits >= 1 && key_bits <= 32 * key_words_, "{}: {} bits of keys of {} words", keys_.name(), key_bits,
-          key_words_);
+    check(key_bits >= 1 && key_bits <= 32 * key_words_, "{}: {} bits of keys of {} words", keys.name(), key_bits, key_words_);
+    if (in_one_group_)
+    {
+        rec.run(small_, 1, gpu::SmallSortParams{.max_count = max_count_, .key_bits = key_bits},
+                {{"Size", size}, {"Keys", keys}, {"Values", values}});
+        return;
+    }
     // An even number of passes, so that the last one ends in the caller's buffers.
     const uint32_t pass_count = 2 * dividedUp(key_bits, 2 * gpu::kMaxDigitBits);
     const uint32_t digit_bits = dividedUp(key_bits, pass_count);
@@ -75,15 +103,26 @@ void RadixSort::record(Recorder& rec, const Buffer& keys, const Buffer& values, 
 void RadixSort::recordPass(Recorder& rec, const Pairs& from, const Pairs& to, const Buffer& size,
                            const gpu::SortParams& params) const
 {
-    rec.run(count_, worker_count_, params, {{"Size", size}, {"Keys", from.keys}, {"Counts", counts_}});
+    const bool groups = workers_ == SortWorkers::kGroups;
+    const uint32_t threads = worker_count_ * (groups ? gpu::kPrimitivesGroupSize : 1);
+    rec.run(count_, threads, params, {{"Size", size}, {"Keys", from.keys}, {"Counts", counts_}});
+    if (groups)
+    {
+        rec.run(offsets_, gpu::kPrimitivesGroupSize << params.digit_bits, params,
+                {{"Size", size}, {"Counts", counts_}, {"Totals", totals_}});
+        rec.run(move_, threads, params,
+                {{"Size", size}, {"Keys", from.keys}, {"Values", from.values}, {"Offsets", counts_},
+                 {"Totals", totals_}, {"MovedKeys", to.keys}, {"MovedValues", to.values}});
+        return;
+    }
     rec.run(offsets_, 1, params, {{"Size", size}, {"Counts", counts_}});
-    rec.run(move_, worker_count_, params,
+    rec.run(move_, threads, params,
             {{"Size", size}, {"Keys", from.keys}, {"Values", from.values}, {"Offsets", counts_},
              {"MovedKeys", to.keys}, {"MovedValues", to.values}});
 }
 
 Scan::Scan(const Device& device, std::string_view name, uint32_t max_count)
-    : params_(scanParams(max_count)), sum_(device.kernel("primitives/sum")), scan_(device.kernel("primitives/scan")),
+    : params_(scanParams(device, max_count)), sum_(device.kernel("primitives/sum")), scan_(device.kernel("primitives/scan", scanConstants(device))),
       group_sums_(device.array<uint32_t>(fmt::format("{}.group_sums", name), params_.group_count))
 {
 }
@@ -97,8 +136,8 @@ void Scan::record(Recorder& rec, const Buffer& values, const Buffer& sums, const
 }
 
 Compaction::Compaction(const Device& device, std::string_view name, uint32_t max_count)
-    : params_(scanParams(max_count)), sum_(device.kernel("primitives/sum", kFlags)),
-      compact_(device.kernel("primitives/compact")),
+    : params_(scanParams(device, max_count)), sum_(device.kernel("primitives/sum", kFlags)),
+      compact_(device.kernel("primitives/compact", scanConstants(device))),
       group_sums_(device.array<uint32_t>(fmt::format("{}.group_sums", name), params_.group_count))
 {
 }

@@ -45,8 +45,10 @@ private:
                     const gpu::SortParams& params) const;
 
     uint32_t max_count_, key_words_, worker_count_;
-    Kernel count_, offsets_, move_;
-    Buffer keys_, values_, counts_; // scratch
+    SortWorkers workers_;
+    bool in_one_group_; // and in one dispatch, without scratch
+    Kernel small_, count_, offsets_, move_;
+    Buffer keys_, values_, counts_, totals_; // scratch
 };
 
 /// The exclusive prefix sum of uints, modulo 2^32.
