@@ -27,6 +27,8 @@ GPU_CONST uint kLanes = 8u; // threads of a workgroup; counters of all fill 8 Ki
 GPU_CONST uint kMaxLaneGroups = 32u;
 GPU_CONST uint kLaneLeast = 512u; // pairs for which a further worker pays
 
+GPU_CONST uint kReduceItems = 32u; // values that a thread adds up at each level of a segmented reduction
+
 struct SortParams
 {
     uint max_count;
@@ -50,6 +52,15 @@ struct ScanParams
     uint least_share; // of a workgroup, a multiple of kPrimitivesGroupSize
 };
 GPU_SIZE(ScanParams, 12);
+
+struct ReduceParams
+{
+    uint max_count;
+    uint segment_count;
+    uint level;
+    uint is_last_level; // 0 or 1
+};
+GPU_SIZE(ReduceParams, 16);
 
 GPU_NAMESPACE_END
 #endif

@@ -25,7 +25,7 @@ int main(int argc, char** argv)
     primitives->add_option("--repeats", primitive_options.repeats, "timed runs of each kind")
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
-    primitives->add_option("--workers", primitive_options.workers, "who takes a share of a sort")
+    primitives->add_option("--workers", primitive_options.workers, "who takes a share of the work")
         ->check(CLI::IsMember({"auto", "groups", "threads"}))
         ->capture_default_str();
     primitives->add_option("--device", primitive_options.device, "index, part of a name, or cpu; default the best suitable one");

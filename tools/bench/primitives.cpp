@@ -9,8 +9,8 @@
 namespace
 {
 constexpr std::array kSizes{1u << 12, 1u << 16, 1u << 20, 1u << 22};
-constexpr std::array kKinds{"sort 30 bits", "sort 32 bits", "sort 64 bits", "scan", "compaction"};
-constexpr std::array kKeys{"sort_30", "sort_32", "sort_64", "scan", "compaction"};
+constexpr std::array kKinds{"sort 30 bits", "sort 32 bits", "sort 64 bits", "scan", "compaction", "segmented reduction"};
+constexpr std::array kKeys{"sort_30", "sort_32", "sort_64", "scan", "compaction", "segmented_reduction"};
 static_assert(kKinds.size() == kKeys.size());
 
 struct Row
@@ -27,7 +27,7 @@ struct Row
     double gigaitemsPerSecond(size_t kind) const { return items / median(kind) * 1e-6; }
 };
 
-Row measure(const Device& device, uint32_t count, SortWorkers workers, uint32_t repeats)
+Row measure(const Device& device, uint32_t count, Workers workers, uint32_t repeats)
 {
     std::mt19937 engine(1);
     std::vector<uint32_t> random(uint64_t(count) * 2);
@@ -41,8 +41,13 @@ Row measure(const Device& device, uint32_t count, SortWorkers workers, uint32_t 
     const Buffer values = device.array<uint32_t>("bench.values", count), total = device.array<uint32_t>("bench.total", 1);
     const Buffer selected = device.array<gpu::QueueSize>("bench.selected", 1);
     const RadixSort sort(device, "bench.sort", count, 1, workers), long_sort(device, "bench.long_sort", count, 2, workers);
-    const Scan scan(device, "bench.scan", count);
-    const Compaction compaction(device, "bench.compaction", count);
+    const Scan scan(device, "bench.scan", count, workers);
+    const SegmentedReduction reduction(device, "bench.reduction", count, SegmentedReduction::Type::kFloat);
+    std::vector<uint32_t> segment(count);
+    std::ranges::transform(random.begin(), random.begin() + count, segment.begin(), [&](uint32_t r) { return r % (count / 16); });
+    std::ranges::sort(segment);
+    const Buffer segments = device.upload<uint32_t>("bench.segments", segment);
+    const Compaction compaction(device, "bench.compaction", count, workers);
 
     Row row{.items = count, .ms = {}};
     constexpr uint32_t kWarmUp = 2;
@@ -62,6 +67,7 @@ Row measure(const Device& device, uint32_t count, SortWorkers workers, uint32_t 
         timed(2, [&] { long_sort.record(rec, keys, values, size, 64); });
         timed(3, [&] { scan.record(rec, source, values, total, size); });
         timed(4, [&] { compaction.record(rec, flags, values, selected, size); });
+        timed(5, [&] { reduction.record(rec, flags, segments, values, size, count / 16); });
         const std::vector<StageTime> times = rec.submitAndWait();
         for (size_t kind = 0; repeat >= kWarmUp && kind < kKinds.size(); ++kind)
             row.ms[kind].push_back(times[kind].ms);
@@ -110,9 +116,9 @@ Status benchPrimitives(const PrimitiveBenchOptions& options)
     const auto device = Device::create(*instance, *index, false);
     if (!device)
         return device.error();
-    const SortWorkers workers = options.workers == "groups"    ? SortWorkers::kGroups
-                                : options.workers == "threads" ? SortWorkers::kThreads
-                                                               : sortWorkersOf(**device);
+    const Workers workers = options.workers == "groups"    ? Workers::kGroups
+                                : options.workers == "threads" ? Workers::kThreads
+                                                               : fastestWorkers(**device);
     std::vector<Row> rows;
     for (const uint32_t size : kSizes)
         rows.push_back(measure(**device, size, workers, options.repeats));

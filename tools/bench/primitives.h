@@ -9,7 +9,7 @@ struct PrimitiveBenchOptions
 {
     uint32_t repeats = 20; // timed runs of each kind and size; the median counts
     std::string device;
-    std::string workers = "auto"; // of the sort: auto, groups or threads
+    std::string workers = "auto"; // auto, groups or threads
     bool json = false;
 };
 
