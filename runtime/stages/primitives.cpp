@@ -43,9 +43,12 @@ const char* reduceKernel(SegmentedReduction::Type type)
 {
     switch (type)
     {
-    case SegmentedReduction::Type::kUint: return "primitives/reduce_uint";
-    case SegmentedReduction::Type::kFloat: return "primitives/reduce_float";
-    case SegmentedReduction::Type::kVec4: return "primitives/reduce_vec4";
+    case SegmentedReduction::Type::kUint:
+        return "primitives/reduce_uint";
+    case SegmentedReduction::Type::kFloat:
+        return "primitives/reduce_float";
+    case SegmentedReduction::Type::kVec4:
+        return "primitives/reduce_vec4";
     }
     return "";
 }
@@ -91,7 +94,8 @@ RadixSort::RadixSort(const Device& device, std::string_view name, uint32_t max_c
 void RadixSort::record(Recorder& rec, const Buffer& keys, const Buffer& values, const Buffer& size,
                        uint32_t key_bits) const
 {
-    check(key_bits >= 1 && key_bits <= 32 * key_words_, "{}: {} bits of keys of {} words", keys.name(), key_bits, key_words_);
+    check(key_bits >= 1 && key_bits <= 32 * key_words_, "{}: {} bits of keys of {} words", keys.name(), key_bits,
+          key_words_);
     if (in_one_group_)
     {
         rec.run(small_, 1, gpu::SmallSortParams{.max_count = max_count_, .key_bits = key_bits},
@@ -124,18 +128,28 @@ void RadixSort::recordPass(Recorder& rec, const Pairs& from, const Pairs& to, co
         rec.run(offsets_, gpu::kPrimitivesGroupSize << params.digit_bits, params,
                 {{"Size", size}, {"Counts", counts_}, {"Totals", totals_}});
         rec.run(move_, threads, params,
-                {{"Size", size}, {"Keys", from.keys}, {"Values", from.values}, {"Offsets", counts_},
-                 {"Totals", totals_}, {"MovedKeys", to.keys}, {"MovedValues", to.values}});
+                {{"Size", size},
+                 {"Keys", from.keys},
+                 {"Values", from.values},
+                 {"Offsets", counts_},
+                 {"Totals", totals_},
+                 {"MovedKeys", to.keys},
+                 {"MovedValues", to.values}});
         return;
     }
     rec.run(offsets_, 1, params, {{"Size", size}, {"Counts", counts_}});
     rec.run(move_, threads, params,
-            {{"Size", size}, {"Keys", from.keys}, {"Values", from.values}, {"Offsets", counts_},
-             {"MovedKeys", to.keys}, {"MovedValues", to.values}});
+            {{"Size", size},
+             {"Keys", from.keys},
+             {"Values", from.values},
+             {"Offsets", counts_},
+             {"MovedKeys", to.keys},
+             {"MovedValues", to.values}});
 }
 
 Scan::Scan(const Device& device, std::string_view name, uint32_t max_count, std::optional<Workers> workers)
-    : params_(scanParams(max_count, workers.value_or(fastestWorkers(device)))), sum_(device.kernel("primitives/sum")), scan_(device.kernel("primitives/scan", scanConstants(workers.value_or(fastestWorkers(device))))),
+    : params_(scanParams(max_count, workers.value_or(fastestWorkers(device)))), sum_(device.kernel("primitives/sum")),
+      scan_(device.kernel("primitives/scan", scanConstants(workers.value_or(fastestWorkers(device))))),
       group_sums_(device.array<uint32_t>(fmt::format("{}.group_sums", name), params_.group_count))
 {
 }
@@ -148,9 +162,9 @@ void Scan::record(Recorder& rec, const Buffer& values, const Buffer& sums, const
             {{"Size", size}, {"Values", values}, {"GroupSums", group_sums_}, {"Sums", sums}, {"Total", total}});
 }
 
-Compaction::Compaction(const Device& device, std::string_view name, uint32_t max_count,
-                       std::optional<Workers> workers)
-    : params_(scanParams(max_count, workers.value_or(fastestWorkers(device)))), sum_(device.kernel("primitives/sum", kFlags)),
+Compaction::Compaction(const Device& device, std::string_view name, uint32_t max_count, std::optional<Workers> workers)
+    : params_(scanParams(max_count, workers.value_or(fastestWorkers(device)))),
+      sum_(device.kernel("primitives/sum", kFlags)),
       compact_(device.kernel("primitives/compact", scanConstants(workers.value_or(fastestWorkers(device))))),
       group_sums_(device.array<uint32_t>(fmt::format("{}.group_sums", name), params_.group_count))
 {
@@ -160,9 +174,9 @@ void Compaction::record(Recorder& rec, const Buffer& flags, const Buffer& indice
                         const Buffer& size) const
 {
     recordSums(rec, sum_, params_, flags, group_sums_, size);
-    rec.run(compact_, params_.group_count * gpu::kPrimitivesGroupSize, params_,
-            {{"Size", size}, {"Flags", flags}, {"GroupSums", group_sums_}, {"Indices", indices},
-             {"Selected", selected}});
+    rec.run(
+        compact_, params_.group_count * gpu::kPrimitivesGroupSize, params_,
+        {{"Size", size}, {"Flags", flags}, {"GroupSums", group_sums_}, {"Indices", indices}, {"Selected", selected}});
 }
 
 SegmentedReduction::SegmentedReduction(const Device& device, std::string_view name, uint32_t max_count, Type type)
@@ -193,8 +207,12 @@ void SegmentedReduction::record(Recorder& rec, const Buffer& values, const Buffe
                                   .segment_count = segment_count,
                                   .level = level,
                                   .is_last_level = is_last ? 1u : 0u},
-                {{"Size", size}, {"Segments", *from_segments}, {"Values", *from_values},
-                 {"NextSegments", next.segments}, {"NextValues", next.values}, {"Results", results}});
+                {{"Size", size},
+                 {"Segments", *from_segments},
+                 {"Values", *from_values},
+                 {"NextSegments", next.segments},
+                 {"NextValues", next.values},
+                 {"Results", results}});
         if (is_last)
             return;
         from_segments = &next.segments;

@@ -1,5 +1,5 @@
-// Sort, scan, compaction, segmented reduction: what stages build their lists with. Counts are made on the GPU and never read back.
-// Every one is a stage's member: it allocates its scratch in its constructor and borrows everything else.
+// Sort, scan, compaction, segmented reduction: what stages build their lists with. Counts are made on the GPU and never
+// read back. Every one is a stage's member: it allocates its scratch in its constructor and borrows everything else.
 #pragma once
 #include "runtime/gpu/gpu.h"
 #include "shaders/primitives/primitives.h"

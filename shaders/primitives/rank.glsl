@@ -1,6 +1,6 @@
 // Sorts a tile of pairs within a workgroup of kPrimitivesGroupSize threads, kItems pairs each, by a few bits at a time.
-// The includer defines kItems and kKeyWords. After Merrill and Grimshaw, "High Performance and Scalable Radix Sorting",
-// 2011: every thread counts its own pairs, so no atomics and no subgroup operations are needed.
+// The includer defines kItems and kKeyWords. After Merrill and Grimshaw, "High Performance and Scalable Radix
+// Sorting", 2011: every thread counts its own pairs, so no atomics and no subgroup operations are needed.
 
 const uint kStepBits = 4u;
 const uint kStepWords = 8u; // counters of 16 digits, two to a word: a tile has less than 2^16 pairs
@@ -9,7 +9,8 @@ const uint kTile = kPrimitivesGroupSize * kItems;
 uvec2 tile_keys[kItems]; // of pairs thread * kItems + i
 uint tile_values[kItems];
 uint tile_ranks[kItems];
-shared uint s_words[max(kTile, kPrimitivesGroupSize * kStepWords)]; // counters [digit % 8][thread], or what is exchanged
+// Counters [digit % kStepWords][thread], or what the threads exchange.
+shared uint s_words[max(kTile, kPrimitivesGroupSize * kStepWords)];
 
 uint ownPlace(uint i)
 {

@@ -20,7 +20,8 @@ layout(set = 1, binding = 4, scalar) writeonly buffer Total { uint total_sum; };
 
 void main()
 {
-    const uint count = min(size.count, params.max_count), share = shareOf(count, params.group_count, params.least_share);
+    const uint count = min(size.count, params.max_count);
+    const uint share = shareOf(count, params.group_count, params.least_share);
     const uint group = gl_WorkGroupID.x, begin = group * share, end = min(begin + share, count);
     if (begin >= count && group > 0u)
         return;

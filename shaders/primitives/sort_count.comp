@@ -22,7 +22,8 @@ shared uint s_counts[kMaxDigits];
 void main()
 {
     const uint thread = gl_LocalInvocationIndex, worker = gl_WorkGroupID.x;
-    const uint count = min(size.count, params.max_count), share = shareOf(count, params.worker_count, kSortTile);
+    const uint count = min(size.count, params.max_count);
+    const uint share = shareOf(count, params.worker_count, kSortTile);
     const uint begin = worker * share, end = min(begin + share, count);
     if (begin >= count)
         return;

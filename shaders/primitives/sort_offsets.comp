@@ -21,7 +21,8 @@ const uint kWorkers = kMaxSortGroups / kPrimitivesGroupSize; // of each thread
 void main()
 {
     const uint thread = gl_LocalInvocationIndex, row = gl_WorkGroupID.x * params.worker_count;
-    const uint count = min(size.count, params.max_count), share = shareOf(count, params.worker_count, kSortTile);
+    const uint count = min(size.count, params.max_count);
+    const uint share = shareOf(count, params.worker_count, kSortTile);
     const uint workers = (count + share - 1u) / share, first = thread * kWorkers;
     uint here[kWorkers];
     uint sum = 0u, total;

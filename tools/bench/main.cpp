@@ -21,7 +21,11 @@ int main(int argc, char** argv)
     rays->add_option("--device", options.device, "index, part of a name, or cpu; default the best suitable one");
     rays->add_flag("--json", options.json, "print JSON");
     PrimitiveBenchOptions primitive_options;
-    CLI::App* primitives = app.add_subcommand("primitives", "sort, scan, compaction: GItems/s at several sizes");
+    CLI::App* primitives = app.add_subcommand("primitives", "sort, scan, compaction, segmented reduction: GItems/s at several sizes");
+    primitives->add_option("--items", primitive_options.items, "sizes, comma-separated")
+        ->delimiter(',')
+        ->check(CLI::Range(16, 1 << 26))
+        ->capture_default_str();
     primitives->add_option("--repeats", primitive_options.repeats, "timed runs of each kind")
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();

@@ -8,8 +8,8 @@
 
 namespace
 {
-constexpr std::array kSizes{1u << 12, 1u << 16, 1u << 20, 1u << 22};
-constexpr std::array kKinds{"sort 30 bits", "sort 32 bits", "sort 64 bits", "scan", "compaction", "segmented reduction"};
+constexpr std::array kKinds{"sort 30 bits", "sort 32 bits", "sort 64 bits",
+                            "scan",         "compaction",   "segmented reduction"};
 constexpr std::array kKeys{"sort_30", "sort_32", "sort_64", "scan", "compaction", "segmented_reduction"};
 static_assert(kKinds.size() == kKeys.size());
 
@@ -36,15 +36,19 @@ Row measure(const Device& device, uint32_t count, Workers workers, uint32_t repe
     std::ranges::transform(random.begin(), random.begin() + count, coin.begin(), [](uint32_t r) { return r & 1; });
     const gpu::QueueSize all{.groups = {0, 0, 0}, .count = count};
     const Buffer size = device.upload<gpu::QueueSize>("bench.size", std::span(&all, 1));
-    const Buffer source = device.upload<uint32_t>("bench.source", random), flags = device.upload<uint32_t>("bench.flags", coin);
+    const Buffer source = device.upload<uint32_t>("bench.source", random),
+                 flags = device.upload<uint32_t>("bench.flags", coin);
     const Buffer keys = device.array<uint32_t>("bench.keys", uint64_t(count) * 2);
-    const Buffer values = device.array<uint32_t>("bench.values", count), total = device.array<uint32_t>("bench.total", 1);
+    const Buffer values = device.array<uint32_t>("bench.values", count),
+                 total = device.array<uint32_t>("bench.total", 1);
     const Buffer selected = device.array<gpu::QueueSize>("bench.selected", 1);
-    const RadixSort sort(device, "bench.sort", count, 1, workers), long_sort(device, "bench.long_sort", count, 2, workers);
+    const RadixSort sort(device, "bench.sort", count, 1, workers),
+        long_sort(device, "bench.long_sort", count, 2, workers);
     const Scan scan(device, "bench.scan", count, workers);
     const SegmentedReduction reduction(device, "bench.reduction", count, SegmentedReduction::Type::kFloat);
     std::vector<uint32_t> segment(count);
-    std::ranges::transform(random.begin(), random.begin() + count, segment.begin(), [&](uint32_t r) { return r % (count / 16); });
+    std::ranges::transform(random.begin(), random.begin() + count, segment.begin(),
+                           [&](uint32_t r) { return r % (count / 16); });
     std::ranges::sort(segment);
     const Buffer segments = device.upload<uint32_t>("bench.segments", segment);
     const Compaction compaction(device, "bench.compaction", count, workers);
@@ -82,8 +86,8 @@ void printJson(std::span<const Row> rows, const Device& device)
     {
         fmt::print("{}{{\"items\": {}", i > 0 ? ", " : "", rows[i].items);
         for (size_t kind = 0; kind < kKinds.size(); ++kind)
-            fmt::print(", \"{0}_gitems_per_s\": {1:.6f}, \"{0}_ms\": {2:.6f}", kKeys[kind], rows[i].gigaitemsPerSecond(kind),
-                       rows[i].median(kind));
+            fmt::print(", \"{0}_gitems_per_s\": {1:.6f}, \"{0}_ms\": {2:.6f}", kKeys[kind],
+                       rows[i].gigaitemsPerSecond(kind), rows[i].median(kind));
         fmt::print("}}");
     }
     fmt::print("]}}\n");
@@ -117,10 +121,10 @@ Status benchPrimitives(const PrimitiveBenchOptions& options)
     if (!device)
         return device.error();
     const Workers workers = options.workers == "groups"    ? Workers::kGroups
-                                : options.workers == "threads" ? Workers::kThreads
-                                                               : fastestWorkers(**device);
+                            : options.workers == "threads" ? Workers::kThreads
+                                                           : fastestWorkers(**device);
     std::vector<Row> rows;
-    for (const uint32_t size : kSizes)
+    for (const uint32_t size : options.items)
         rows.push_back(measure(**device, size, workers, options.repeats));
     if (options.json)
         printJson(rows, **device);

@@ -4,9 +4,11 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 struct PrimitiveBenchOptions
 {
+    std::vector<uint32_t> items{1u << 12, 1u << 16, 1u << 20, 1u << 22};
     uint32_t repeats = 20; // timed runs of each kind and size; the median counts
     std::string device;
     std::string workers = "auto"; // auto, groups or threads
