@@ -167,7 +167,6 @@ void GlobalIllumination::recordGlossy(const Frame& frame, const CutStage::Output
                     .point_count = frame.pixel_count,
                     .first_sample = frame.index,
                     .specular_depth = frame.settings.specular_depth,
-                    .radius = frame.settings.density_radius * diagonal_,
                     .seed = frame.camera.seed});
 }
 

@@ -26,7 +26,7 @@ constexpr std::array kKnobs{
     Knob{"samples.mode", &Settings::samples_mode, 0, 2, "", "how irradiance samples are placed", "uniform,seeded,seeded+kmeans"},
     Knob{"samples.count", &Settings::sample_count, 16, 65536, "", "irradiance samples a frame"},
     Knob{"samples.iterations", &Settings::sample_iterations, 0, 16, "", "iterations of k-means"},
-    Knob{"samples.alpha", &Settings::sample_alpha, 0.01, 10, "per half of the scene's longest side", "weight of distance against normals"},
+    Knob{"samples.alpha", &Settings::sample_alpha, 0.01, 1000, "per half of the scene's longest side", "weight of distance against normals"},
     Knob{"gather.rays", &Settings::gather_rays, 1, 4096, "", "rays an irradiance sample gathers with"},
     Knob{"caustics.photons", &Settings::caustic_photons, 256, 4e6, "", "photon paths aimed at specular objects a frame"},
     Knob{"caustics.nearest", &Settings::caustic_density_photons, 8, 1024, "", "photons of a caustic's density estimate"},

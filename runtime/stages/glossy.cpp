@@ -13,8 +13,7 @@ void GlossyStage::record(Recorder& rec, const RayStage& rays, const CutStage::Ou
                              .first_sample = in.first_sample,
                              .seed = in.seed,
                              .depth = 0,
-                             .depth_limit = in.specular_depth,
-                             .radius = in.radius};
+                             .depth_limit = in.specular_depth};
     rays.reset(rec, queue_.size);
     rec.run(generate_, in.point_count, params,
             {{"Points", in.points}, {"Queue", queue_.size}, {"Rays", queue_.rays}, {"States", states_}});

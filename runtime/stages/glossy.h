@@ -16,7 +16,6 @@ public:
         uint32_t point_count;
         uint32_t first_sample;
         uint32_t specular_depth; // most delta events of a ray
-        float radius;            // metres: how far a cut node may be
         uint32_t seed;
     };
     void record(Recorder& rec, const RayStage& rays, const CutStage::Output& cut, const Input& in) const;

@@ -22,6 +22,13 @@ layout(set = 1, binding = 9, scalar) writeonly buffer Finals { CutNode finals[];
 #include "shaders/lib/density.glsl"
 #include "shaders/lib/photon_node.glsl"
 
+void divide(uint id)
+{
+    uint slot = atomicAdd(next_size.count, 2u);
+    next[slot] = childId(tree_nodes[id].left);
+    next[slot + 1u] = childId(tree_nodes[id].right);
+}
+
 void main()
 {
     uint i = gl_GlobalInvocationID.x;
@@ -29,21 +36,28 @@ void main()
         return;
     uint id = work[i];
     PhotonNode node = photonNode(id);
+    // A node of few photons is not worth dividing: its children's estimates would share nearly all of theirs.
+    bool small = node.count < max(2u * kCutFewest, params.photon_count / 4u);
+    if (params.last == 0u && !small && !node.flat_)
+    {
+        divide(id);
+        return;
+    }
     // As if the node's photons lay evenly over its area; half as many again, so that one look mostly suffices.
     float guess2 = 1.5 * kInvPi * node.area * float(params.photon_count) / float(node.count);
     DensityEstimate estimate = estimateIrradiance(node.center, node.normal, size.count, params.photon_count, square(params.radius),
                                                   guess2 > 0.0 ? guess2 : square(params.radius) / 64.0);
     float exact = luminance(estimate.irradiance);
-    bool agrees = node.flat_ && abs(exact - node.irradiance) <= params.difference * max(exact, node.irradiance);
-    if (params.last != 0u || agrees || node.count < 2u * kCutFewest)
+    // A sum over n photons is known to 1 / sqrt(n): a difference that chance explains is no reason to divide.
+    float tolerance = params.difference + inversesqrt(float(node.count));
+    bool agrees = abs(exact - node.irradiance) <= tolerance * max(exact, node.irradiance);
+    if (params.last == 0u && !small && !agrees)
     {
-        // A node of few photons speaks for as much surface as density estimation with that few would.
-        float support = max(node.longest, sqrt(estimate.radius2 * float(kCutFewest) / float(params.photon_count)));
-        members[id] = 1u;
-        finals[id] = CutNode(node.center, support, estimate.irradiance, packNormal(node.normal));
+        divide(id);
         return;
     }
-    uint slot = atomicAdd(next_size.count, 2u);
-    next[slot] = childId(tree_nodes[id].left);
-    next[slot + 1u] = childId(tree_nodes[id].right);
+    // A node of few photons speaks for as much surface as density estimation with that few would.
+    float support = max(node.longest, sqrt(estimate.radius2 * float(kCutFewest) / float(params.photon_count)));
+    members[id] = 1u;
+    finals[id] = CutNode(node.center, support, estimate.irradiance, packNormal(node.normal));
 }

@@ -24,8 +24,7 @@ vec3 irradianceAt(vec3 x, vec3 n)
 {
     if (params.mode == kCutNearest)
         return nearestCutIrradiance(x, n, params.radius * params.radius);
-    float support;
-    return cutIrradiance(x, n, params.radius * params.radius, support);
+    return cutIrradiance(x, n);
 }
 #include "shaders/lib/gather_link.glsl"
 #include "shaders/gather/link_body.glsl"

@@ -12,9 +12,8 @@ struct GlossyParams
     uint seed;
     uint depth;        // delta events before this one
     uint depth_limit;
-    float radius;      // metres: how far a cut node may be
 };
-GPU_SIZE(GlossyParams, 24);
+GPU_SIZE(GlossyParams, 20);
 
 GPU_NAMESPACE_END
 #endif

@@ -22,8 +22,7 @@ layout(set = 1, binding = 9, scalar) readonly buffer CutNodes { CutNode cut_node
 
 vec3 irradianceAt(vec3 x, vec3 n)
 {
-    float support;
-    return cutIrradiance(x, n, params.radius * params.radius, support);
+    return cutIrradiance(x, n);
 }
 #include "shaders/lib/gather_link.glsl"
 

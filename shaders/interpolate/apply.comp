@@ -29,7 +29,7 @@ float sampleWeight(Sample s, vec3 x, vec3 n)
     vec3 normal = unpackNormal(s.normal);
     if (distance2 >= square(s.support) || dot(n, normal) <= 0.01 || dot(d, n + normal) < -0.01 * s.harmonic)
         return 0.0;
-    float rim = square(1.0 - distance2 / square(s.support));
+    float rim = square(max(0.0, 1.0 - surfaceDistance2(d, normal) / square(s.support)));
     return rim * min(kLargestWeight, 1.0 / max(sqrt(distance2) / s.harmonic + normalVariation(n, normal), 1e-6));
 }
 

@@ -15,10 +15,11 @@ vec3 nearestCutIrradiance(vec3 x, vec3 n, float radius2)
     while (nextRange(x, radius2, first, end))
         for (uint i = first; i < end; ++i)
         {
-            vec3 d = cut_nodes[i].center - x;
-            if (dot(d, d) < radius2 && dot(n, unpackNormal(cut_nodes[i].normal)) > 0.2)
+            vec3 normal = unpackNormal(cut_nodes[i].normal);
+            float distance2 = surfaceDistance2(cut_nodes[i].center - x, normal);
+            if (distance2 < radius2 && dot(n, normal) > 0.2)
             {
-                radius2 = dot(d, d);
+                radius2 = distance2;
                 nearest = i;
             }
         }
@@ -27,30 +28,29 @@ vec3 nearestCutIrradiance(vec3 x, vec3 n, float radius2)
     return cut_nodes[nearest].irradiance;
 }
 
-/// Irradiance at x from the cut nodes whose support holds it, weighted by distance and normal; from the nearest one
-/// otherwise. @param radius2 square metres: how far that may be
-/// @param support metres, mean support of the nodes that were read
-vec3 cutIrradiance(vec3 x, vec3 n, float radius2, out float support)
+// Where nodes cover a surface evenly their weights sum to more than 1 (pi / 2 for a lattice). Below this the place lies at
+// the rim of what the photons lit, and the light fades: nodes exist where photons fell, so nothing else would say that
+// there are none here.
+const float kFullCover = 0.5;
+
+/// Irradiance at x from the cut nodes whose support holds it, weighted by distance and normal; 0 where no photon fell near.
+vec3 cutIrradiance(vec3 x, vec3 n)
 {
     vec3 sum = vec3(0.0);
     float weights = 0.0;
-    support = 0.0;
     uint first, end;
     beginRanges(cut_size.count);
     while (nextRange(x, 0.0, first, end))
         for (uint i = first; i < end; ++i)
         {
             CutNode node = cut_nodes[i];
-            vec3 d = node.center - x;
-            float weight = max(0.0, 1.0 - dot(d, d) / square(node.support)) * max(0.0, dot(n, unpackNormal(node.normal)));
+            vec3 normal = unpackNormal(node.normal);
+            float distance2 = surfaceDistance2(node.center - x, normal);
+            float weight = max(0.0, 1.0 - distance2 / square(node.support)) * max(0.0, dot(n, normal));
             sum += weight * node.irradiance;
-            support += weight * node.support;
             weights += weight;
         }
-    if (weights < 1e-3)
-        return nearestCutIrradiance(x, n, radius2);
-    support /= weights;
-    return sum / weights;
+    return sum / max(weights, kFullCover);
 }
 
 #endif

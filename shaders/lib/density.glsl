@@ -8,14 +8,12 @@
 
 const uint kDensityBins = 32u;
 const uint kDensityRefinements = 3u; // histograms, each within one bin of the one before
-const uint kLeastPhotons = 8u;       // fewer say nothing
 
-/// Squared distance of a photon to x, kInfinity where it lights another surface.
+/// Squared distance of a photon to x, longer off the surface than along it; kInfinity where it lights another surface.
 float photonDistance2(Photon photon, vec3 x, vec3 n)
 {
-    vec3 d = photon.position - x;
     bool counts = dot(n, unpackNormal(photon.direction)) < 0.0 && dot(n, unpackNormal(photon.normal)) > 0.1;
-    return counts ? dot(d, d) : kInfinity;
+    return counts ? surfaceDistance2(photon.position - x, n) : kInfinity;
 }
 
 /// Squared distance within which there are `wanted` photons, or radius2 where there are fewer.
@@ -74,7 +72,8 @@ struct DensityEstimate
 };
 
 /// Irradiance at x from the `wanted` nearest photons within sqrt(radius2), weighted by (1 - d^2/r^2)^2, whose integral
-/// over the disc is pi r^2 / 3 (Silverman 1986). 0 where there are fewer than kLeastPhotons. @param guess2 of their distance
+/// over the disc is pi r^2 / 3 (Silverman 1986). However few
+/// there are: leaving out those of a dim place would take its light away. @param guess2 of their distance
 DensityEstimate estimateIrradiance(vec3 x, vec3 n, uint photon_count, uint wanted, float radius2, float guess2)
 {
     uint found;
@@ -82,7 +81,7 @@ DensityEstimate estimateIrradiance(vec3 x, vec3 n, uint photon_count, uint wante
     vec3 sum = vec3(0.0);
     uint first, end;
     beginRanges(photon_count);
-    while (found >= kLeastPhotons && nextRange(x, within2, first, end))
+    while (nextRange(x, within2, first, end))
         for (uint i = first; i < end; ++i)
         {
             float d2 = photonDistance2(photons[i], x, n);

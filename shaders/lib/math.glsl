@@ -11,6 +11,10 @@ float maxComponent(vec3 v) { return max(v.x, max(v.y, v.z)); }
 /// Rec. 709 luminance of linear RGB.
 float luminance(vec3 rgb) { return dot(rgb, vec3(0.2126, 0.7152, 0.0722)); }
 
+/// |d|^2 with d's part along the normal n counting four times: what lies off a surface's plane is probably on another one,
+/// whose light must not leak (Jensen 2001 compresses the sphere of a density estimate likewise).
+float surfaceDistance2(vec3 d, vec3 n) { return dot(d, d) + 15.0 * square(dot(d, n)); }
+
 /// A right-handed orthonormal frame with z = n (Duff et al. 2017, "Building an Orthonormal Basis, Revisited").
 mat3 frameAround(vec3 n)
 {

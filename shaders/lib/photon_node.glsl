@@ -38,7 +38,10 @@ PhotonNode photonNode(uint id)
     vec3 n = abs(normal);
     // The box's shadow along the normal: exact for a flat patch along two axes, and never the huge (longest side)^2 of a
     // long, narrow one.
-    float area = max(n.x * extent.y * extent.z + n.y * extent.x * extent.z + n.z * extent.x * extent.y, 1e-20);
+    // The box of n photons strewn over a square is smaller than the square by (n - 1) / (n + 1) each way.
+    float count = float(tree_nodes[id].count);
+    float area = max(n.x * extent.y * extent.z + n.y * extent.x * extent.z + n.z * extent.x * extent.y, 1e-20) *
+                 square((count + 1.0) / (count - 1.0));
     bool flat_ = resultant > 0.8 * s.weight && dot(n, extent) < 0.5 * longest; // half angle of a uniform cone: 53 degrees
     return PhotonNode(s.position / max(s.weight, 1e-30), normal, longest, area, s.weight / area, flat_, tree_nodes[id].count);
 }
