@@ -19,6 +19,8 @@ public:
     /// Records one frame: one sample a pixel, vec3[width * height]; of settings.term alone where that is not all.
     /// @param camera with first_sample: the frame's index in a standing picture
     const Buffer& record(Recorder& rec, const RayStage& rays, const gpu::CameraParams& camera, const Settings& settings);
+    /// Of the last frame; waits for the device.
+    std::vector<gpu::Sample> irradianceSamples(const Device& device) const { return samples_.download(device); }
 
 private:
     struct Frame;

@@ -45,6 +45,10 @@ public:
     std::vector<gpu::vec3> picture(const Device& device) const;
     /// Samples left out because they were NaN or infinite.
     uint32_t nonFiniteCount(const Device& device) const;
+    /// The irradiance samples of the last frame in Mode::kGi; waits for the device.
+    std::vector<gpu::Sample> irradianceSamples(const Device& device) const { return gi_->irradianceSamples(device); }
+    /// Counts the rays of frames recorded from now on; null ends that.
+    void countRays(RayTally* tally) { rays_.countInto(tally); }
 
 private:
     uint32_t width_, height_, max_batch_;

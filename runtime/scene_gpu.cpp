@@ -103,6 +103,12 @@ SceneGpu::~SceneGpu()
     vkDestroySampler(device_.handle(), environment_sampler_, nullptr);
 }
 
+void SceneGpu::setLight(Recorder& rec, uint32_t index, const gpu::Light& light) const
+{
+    check(index < info_.light_count, "light {} of {}", index, info_.light_count);
+    rec.write(buffers_[gpu::kLightsBinding - gpu::kBvhNodesBinding], index * sizeof(light), std::as_bytes(std::span(&light, 1)));
+}
+
 void SceneGpu::createImages(const package::Package& package)
 {
     constexpr std::array<uint32_t, 4> kWhite{~0u, ~0u, ~0u, ~0u};

@@ -23,6 +23,8 @@ public:
     std::span<const uint32_t> constants() const { return constants_; }
     /// Whether it has any of these kFeature*.
     bool hasFeature(uint32_t features) const { return (constants_[0] & features) != 0; }
+    /// Replaces light `index` from the next kernel of `rec` on; with the kind and pmf it has, on which other tables rest.
+    void setLight(Recorder& rec, uint32_t index, const gpu::Light& light) const;
     /// Some light has an extent, so that a ray may find it: an emissive triangle or an environment.
     bool hasAreaLights() const { return hasFeature(gpu::kFeatureTriangleLights | gpu::kFeatureEnvironment); }
 

@@ -174,14 +174,23 @@ void Recorder::fill(const Buffer& buffer, uint32_t word)
     vkCmdFillBuffer(commands_, buffer.handle(), 0, VK_WHOLE_SIZE, word);
 }
 
-void Recorder::copy(const Buffer& from, const Buffer& to, uint64_t bytes)
+void Recorder::copy(const Buffer& from, const Buffer& to, uint64_t bytes, uint64_t to_offset)
 {
     if (conflicts(from, false) || conflicts(to, true))
         barrier();
     note(from, true, false);
     note(to, false, true);
-    const VkBufferCopy region{.size = bytes};
+    const VkBufferCopy region{.dstOffset = to_offset, .size = bytes};
     vkCmdCopyBuffer(commands_, from.handle(), to.handle(), 1, &region);
+}
+
+void Recorder::write(const Buffer& to, uint64_t offset, std::span<const std::byte> bytes)
+{
+    check(bytes.size() % 4 == 0 && bytes.size() <= 65536 && offset + bytes.size() <= to.size(), "{} bytes at {} of {} of {} bytes",
+          bytes.size(), offset, to.name(), to.size());
+    barrier(); // kernels may be reading it through the scene set, which nobody has noted
+    vkCmdUpdateBuffer(commands_, to.handle(), offset, bytes.size(), bytes.data());
+    barrier();
 }
 
 void Recorder::submit(VkSemaphore wait_for, VkSemaphore signal)

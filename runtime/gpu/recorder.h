@@ -46,10 +46,15 @@ public:
     /// Starts a command buffer; every kernel sees `scene_set` as descriptor set 0 (may be null for kernels without it).
     void begin(VkDescriptorSet scene_set);
     [[nodiscard]] Scope scope(std::string_view name);
+    /// The innermost scope that is open, "" outside of any.
+    std::string_view scopeName() const { return open_scopes_.empty() ? std::string_view() : scopes_[open_scopes_.back()].name; }
 
     void clear(const Buffer& buffer) { fill(buffer, 0); }
     void fill(const Buffer& buffer, uint32_t word);
-    void copy(const Buffer& from, const Buffer& to, uint64_t bytes);
+    void copy(const Buffer& from, const Buffer& to, uint64_t bytes, uint64_t to_offset = 0);
+    /// Writes at most 64 KiB, a multiple of 4 bytes, from the CPU. Also into a buffer of the scene set: what is recorded
+    /// afterwards sees it.
+    void write(const Buffer& to, uint64_t offset, std::span<const std::byte> bytes);
 
     /// Runs `kernel` on at least `thread_count` threads. `params` must match the kernel's push constants in size, and
     /// `bindings` must name each of its blocks exactly once; either mistake aborts and names the culprit.

@@ -29,16 +29,19 @@ void GatherStage::record(Recorder& rec, const RayStage& rays, const SamplesStage
     {
         rays.closest(rec, *queue, hits_, traceSeed(in.seed, 0, params.depth));
         rays.reset(rec, next->size);
-        if (in.mode == CutMode::kKnn)
-            rec.runIndirect(link_knn_, queue->size, 0, params,
-                            {{"Queue", queue->size}, {"Rays", queue->rays}, {"Hits", hits_}, {"States", states_}, {"NextQueue", next->size},
-                             {"NextRays", next->rays}, {"GatheredBlock", gathered_}, {"Size", map.size}, {"TreeNodes", map.tree.nodes()},
-                             {"Photons", map.photons}});
-        else
-            rec.runIndirect(link_, queue->size, 0, params,
-                            {{"Queue", queue->size}, {"Rays", queue->rays}, {"Hits", hits_}, {"States", states_}, {"NextQueue", next->size},
-                             {"NextRays", next->rays}, {"GatheredBlock", gathered_}, {"CutSize", cut.size}, {"TreeNodes", cut.tree.nodes()},
-                             {"CutNodes", cut.nodes}});
+        {
+            const auto scope = rec.scope("gather.link"); // the lookups: what the cut is there for
+            if (in.mode == CutMode::kKnn)
+                rec.runIndirect(link_knn_, queue->size, 0, params,
+                                {{"Queue", queue->size}, {"Rays", queue->rays}, {"Hits", hits_}, {"States", states_}, {"NextQueue", next->size},
+                                 {"NextRays", next->rays}, {"GatheredBlock", gathered_}, {"Size", map.size}, {"TreeNodes", map.tree.nodes()},
+                                 {"Photons", map.photons}});
+            else
+                rec.runIndirect(link_, queue->size, 0, params,
+                                {{"Queue", queue->size}, {"Rays", queue->rays}, {"Hits", hits_}, {"States", states_}, {"NextQueue", next->size},
+                                 {"NextRays", next->rays}, {"GatheredBlock", gathered_}, {"CutSize", cut.size}, {"TreeNodes", cut.tree.nodes()},
+                                 {"CutNodes", cut.nodes}});
+        }
         rays.close(rec, next->size);
         std::swap(queue, next);
     }

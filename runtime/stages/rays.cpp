@@ -1,5 +1,7 @@
 #include "runtime/stages/rays.h"
 
+#include <algorithm>
+
 RayQueue::RayQueue(const Device& device, std::string_view name, uint32_t capacity)
     : size(device.array<gpu::QueueSize>(fmt::format("{}.size", name), 1)),
       rays(device.array<gpu::Ray>(fmt::format("{}.rays", name), capacity))
@@ -12,6 +14,35 @@ uint32_t traceSeed(uint32_t seed, uint32_t sample, uint32_t depth)
     for (const uint32_t value : {sample, depth})
         mixed = (mixed ^ value) * 0x9e3779b1u + 0x7f4a7c15u;
     return mixed;
+}
+
+namespace
+{
+constexpr uint32_t kMaxTallied = 4096; // queues
+}
+
+RayTally::RayTally(const Device& device) : device_(device), sizes_(device.array<gpu::QueueSize>("rays.tally", kMaxTallied)) {}
+
+void RayTally::note(Recorder& rec, const Buffer& queue_size, bool any_hit)
+{
+    check(calls_.size() < kMaxTallied, "more than {} queues are counted", kMaxTallied);
+    rec.copy(queue_size, sizes_, sizeof(gpu::QueueSize), calls_.size() * sizeof(gpu::QueueSize));
+    calls_.push_back({.scope = std::string(rec.scopeName()), .any_hit = any_hit, .ray_count = 0});
+}
+
+std::vector<RayTally::Entry> RayTally::entries() const
+{
+    const auto sizes = device_.download<gpu::QueueSize>(sizes_, calls_.size());
+    std::vector<Entry> entries;
+    for (size_t i = 0; i < calls_.size(); ++i)
+    {
+        auto entry = std::ranges::find_if(
+            entries, [&](const Entry& e) { return e.scope == calls_[i].scope && e.any_hit == calls_[i].any_hit; });
+        if (entry == entries.end())
+            entry = entries.insert(entries.end(), calls_[i]);
+        entry->ray_count += sizes[i].count;
+    }
+    return entries;
 }
 
 RayStage::RayStage(const Device& device, const SceneGpu& scene)
@@ -34,11 +65,15 @@ void RayStage::close(Recorder& rec, const Buffer& size) const
 
 void RayStage::closest(Recorder& rec, const RayQueue& queue, const Buffer& hits, uint32_t seed) const
 {
+    if (tally_)
+        tally_->note(rec, queue.size, false);
     rec.runIndirect(closest_, queue.size, 0, gpu::RaysParams{.seed = seed},
                     {{"Queue", queue.size}, {"Rays", queue.rays}, {"Hits", hits}});
 }
 
 void RayStage::visible(Recorder& rec, const Buffer& size, const Buffer& shadow_rays, const Buffer& radiance) const
 {
+    if (tally_)
+        tally_->note(rec, size, true);
     rec.runIndirect(visible_, size, 0, NoParams{}, {{"Queue", size}, {"ShadowRays", shadow_rays}, {"Radiance", radiance}});
 }

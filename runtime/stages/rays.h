@@ -15,6 +15,28 @@ struct RayQueue
 /// Seed of the stochastic alpha decisions of one dispatch: another for every pass over the same pixels.
 uint32_t traceSeed(uint32_t seed, uint32_t sample, uint32_t depth);
 
+/// Counts the rays of recorded frames by the scope they are traced in. For measurements: it costs a copy a queue.
+class RayTally
+{
+public:
+    explicit RayTally(const Device& device);
+
+    struct Entry
+    {
+        std::string scope;
+        bool any_hit; // shadow rays; else closest-hit rays
+        uint64_t ray_count;
+    };
+    void note(Recorder& rec, const Buffer& queue_size, bool any_hit);
+    /// Everything noted and submitted so far, in order of first appearance; waits for the device.
+    std::vector<Entry> entries() const;
+
+private:
+    const Device& device_;
+    Buffer sizes_; // gpu::QueueSize, one for each of calls_
+    std::vector<Entry> calls_;
+};
+
 class RayStage
 {
 public:
@@ -33,6 +55,10 @@ public:
     /// @param shadow_rays gpu::ShadowRay[], @param radiance vec3[]
     void visible(Recorder& rec, const Buffer& size, const Buffer& shadow_rays, const Buffer& radiance) const;
 
+    /// Notes every queue that is traced from now on; null ends that.
+    void countInto(RayTally* tally) { tally_ = tally; }
+
 private:
     Kernel closest_, visible_, dispatch_size_, set_size_;
+    RayTally* tally_ = nullptr;
 };

@@ -33,6 +33,12 @@ public:
     };
     Output record(Recorder& rec, const RayStage& rays, const Input& in) const;
 
+    /// The samples of the last record(); waits for the device.
+    std::vector<gpu::Sample> download(const Device& device) const
+    {
+        return device.download<gpu::Sample>(samples_, device.download<gpu::QueueSize>(size_, 1)[0].count);
+    }
+
     /// Pixels between neighbouring points of the quadtree, each way.
     uint32_t stride() const { return stride_; }
 

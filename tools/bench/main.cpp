@@ -1,39 +1,129 @@
 // lumicut-bench: the command line.
 #include <CLI/CLI.hpp> // before our check(), whose name its options use too
 
+#include "tools/bench/converge.h"
+#include "tools/bench/frame.h"
+#include "tools/bench/lookup.h"
 #include "tools/bench/primitives.h"
 #include "tools/bench/rays.h"
 
 #include <fmt/format.h>
+#undef check
+
+namespace
+{
+struct CommandLine
+{
+    RayBenchOptions rays;
+    FrameBenchOptions frame;
+    ConvergeBenchOptions converge;
+    LookupBenchOptions lookup;
+    PrimitiveBenchOptions primitives;
+    std::string size = "1920x1080";
+    std::vector<std::string> assignments;
+};
+
+CLI::App* addPackageCommand(CLI::App& app, const char* name, const char* help, BenchOptions& options)
+{
+    CLI::App* command = app.add_subcommand(name, help);
+    command->add_option("package", options.package, "the .lumi file")->required();
+    command->add_option("--camera", options.camera, "camera by name or index; default the first");
+    command->add_option("--device", options.device, "index, part of a name, or cpu; default the best suitable one");
+    command->add_flag("--json", options.json, "print JSON");
+    return command;
+}
+
+void addSize(CLI::App* command, CommandLine& line)
+{
+    command->add_option("--size", line.size, "picture size, WIDTHxHEIGHT")->capture_default_str();
+}
+
+void addSettings(CLI::App* command, CommandLine& line)
+{
+    command->add_option("--set", line.assignments, "change a setting, name=value; may be repeated")->allow_extra_args(false);
+}
+
+void addPackageCommands(CLI::App& app, CommandLine& line)
+{
+    CLI::App* rays = addPackageCommand(app, "rays", "ray throughput: primary, diffuse closest-hit, diffuse any-hit", line.rays);
+    addSize(rays, line);
+    rays->add_option("--repeats", line.rays.repeats, "timed runs of each kind")->check(CLI::Range(1, 1000))->capture_default_str();
+
+    CLI::App* frame = addPackageCommand(app, "frame", "what a frame costs by stage, camera and light moving", line.frame);
+    addSize(frame, line);
+    addSettings(frame, line);
+    frame->add_option("--mode", line.frame.mode, "what to render")->check(CLI::IsMember({"gi", "direct", "reference"}))->capture_default_str();
+    frame->add_option("--frames", line.frame.frames, "timed frames")->check(CLI::Range(1, 100000))->capture_default_str();
+    frame->add_option("--warm-up", line.frame.warm_up, "frames before them")->check(CLI::Range(1, 1000))->capture_default_str();
+    frame->add_flag("--still", line.frame.still, "neither camera nor light moves");
+    frame->add_flag("--still-light", line.frame.still_light, "only the camera moves");
+
+    CLI::App* converge = addPackageCommand(app, "converge", "seconds and errors against a reference after 1, 2, 4, ... frames", line.converge);
+    addSettings(converge, line);
+    converge->add_option("reference", line.converge.reference, "the picture taken as right (.exr); its size is rendered")->required();
+    converge->add_option("--mode", line.converge.mode, "what to render")->check(CLI::IsMember({"gi", "reference"}))->capture_default_str();
+    converge->add_option("--frames", line.converge.frames, "frames of a run")->check(CLI::Range(1, 1 << 20))->capture_default_str();
+    converge->add_option("--seeds", line.converge.seeds, "runs to average over")->check(CLI::Range(1, 1000))->capture_default_str();
+    converge->add_flag("--stages", line.converge.stages, "print the stages' median times too");
+
+    CLI::App* lookup = addPackageCommand(app, "lookup", "the illumination cut's lookups against full kNN: time and error", line.lookup);
+    addSize(lookup, line);
+    addSettings(lookup, line);
+    lookup->add_option("--repeats", line.lookup.repeats, "frames of each cut.mode")->check(CLI::Range(1, 1000))->capture_default_str();
+}
+
+void addPrimitives(CLI::App& app, PrimitiveBenchOptions& options)
+{
+    CLI::App* primitives = app.add_subcommand("primitives", "sort, scan, compaction, segmented reduction: GItems/s at several sizes");
+    primitives->add_option("--items", options.items, "sizes, comma-separated")
+        ->delimiter(',')
+        ->check(CLI::Range(16, 1 << 26))
+        ->capture_default_str();
+    primitives->add_option("--repeats", options.repeats, "timed runs of each kind")->check(CLI::Range(1, 1000))->capture_default_str();
+    primitives->add_option("--workers", options.workers, "who takes a share of the work")
+        ->check(CLI::IsMember({"auto", "groups", "threads"}))
+        ->capture_default_str();
+    primitives->add_option("--device", options.device, "index, part of a name, or cpu; default the best suitable one");
+    primitives->add_flag("--json", options.json, "print JSON");
+}
+
+/// Fills in what the command line gives as text.
+Status readTexts(CommandLine& line)
+{
+    uint32_t width = 0, height = 0;
+    int used = 0;
+    if (std::sscanf(line.size.c_str(), "%ux%u%n", &width, &height, &used) != 2 || size_t(used) != line.size.size() || width < 1 ||
+        height < 1 || uint64_t(width) * height > 1u << 24)
+        return Error{ExitCode::kUsage, fmt::format("--size {}: WIDTHxHEIGHT is expected, at most 2^24 pixels", line.size)};
+    for (BenchOptions* options : {static_cast<BenchOptions*>(&line.rays), static_cast<BenchOptions*>(&line.frame),
+                                  static_cast<BenchOptions*>(&line.lookup)})
+    {
+        options->width = width;
+        options->height = height;
+    }
+    Settings settings;
+    for (const std::string& assignment : line.assignments)
+        if (const Status status = applySetting(settings, assignment); !status)
+            return status;
+    line.frame.settings = line.converge.settings = line.lookup.settings = settings;
+    return Success{};
+}
+
+int fail(const std::string& where, const Error& error)
+{
+    fmt::print(stderr, "{}: error: {}\n", error.file.empty() ? where : error.file, error.message);
+    return int(error.code);
+}
+} // namespace
 
 int main(int argc, char** argv)
 {
     CLI::App app{"Measures what this machine does: with Lumicut packages, and on its own.", "lumicut-bench"};
     app.set_version_flag("--version", "lumicut-bench " LUMICUT_VERSION);
     app.require_subcommand(1);
-    RayBenchOptions options;
-    std::string size = "1920x1080";
-    CLI::App* rays = app.add_subcommand("rays", "ray throughput: primary, diffuse closest-hit, diffuse any-hit");
-    rays->add_option("package", options.package, "the .lumi file")->required();
-    rays->add_option("--size", size, "rays as a picture, WIDTHxHEIGHT")->capture_default_str();
-    rays->add_option("--repeats", options.repeats, "timed runs of each kind")->check(CLI::Range(1, 1000))->capture_default_str();
-    rays->add_option("--camera", options.camera, "camera by name or index; default the first");
-    rays->add_option("--device", options.device, "index, part of a name, or cpu; default the best suitable one");
-    rays->add_flag("--json", options.json, "print JSON");
-    PrimitiveBenchOptions primitive_options;
-    CLI::App* primitives = app.add_subcommand("primitives", "sort, scan, compaction, segmented reduction: GItems/s at several sizes");
-    primitives->add_option("--items", primitive_options.items, "sizes, comma-separated")
-        ->delimiter(',')
-        ->check(CLI::Range(16, 1 << 26))
-        ->capture_default_str();
-    primitives->add_option("--repeats", primitive_options.repeats, "timed runs of each kind")
-        ->check(CLI::Range(1, 1000))
-        ->capture_default_str();
-    primitives->add_option("--workers", primitive_options.workers, "who takes a share of the work")
-        ->check(CLI::IsMember({"auto", "groups", "threads"}))
-        ->capture_default_str();
-    primitives->add_option("--device", primitive_options.device, "index, part of a name, or cpu; default the best suitable one");
-    primitives->add_flag("--json", primitive_options.json, "print JSON");
+    CommandLine line;
+    addPackageCommands(app, line);
+    addPrimitives(app, line.primitives);
     try
     {
         app.parse(argc, argv);
@@ -42,23 +132,17 @@ int main(int argc, char** argv)
     {
         return app.exit(error) == 0 ? int(ExitCode::kOk) : int(ExitCode::kUsage);
     }
-    if (primitives->parsed())
-    {
-        const Status status = benchPrimitives(primitive_options);
-        if (!status)
-            fmt::print(stderr, "lumicut-bench: error: {}\n", status.error().message);
-        return int(status ? ExitCode::kOk : status.error().code);
-    }
-    int used = 0;
-    if (std::sscanf(size.c_str(), "%ux%u%n", &options.width, &options.height, &used) != 2 || size_t(used) != size.size() ||
-        options.width < 1 || options.height < 1 || uint64_t(options.width) * options.height > 1u << 24)
-    {
-        fmt::print(stderr, "lumicut-bench: error: --size {}: WIDTHxHEIGHT is expected, at most 2^24 pixels\n", size);
-        return int(ExitCode::kUsage);
-    }
-    const Status status = benchRays(options);
-    if (status)
-        return int(ExitCode::kOk);
-    fmt::print(stderr, "{}: error: {}\n", options.package.string(), status.error().message);
-    return int(status.error().code);
+    if (const Status status = readTexts(line); !status)
+        return fail("lumicut-bench", status.error());
+    const auto run = [](const Status& status, const std::filesystem::path& package)
+    { return status ? int(ExitCode::kOk) : fail(package.string(), status.error()); };
+    if (app.got_subcommand("frame"))
+        return run(benchFrame(line.frame), line.frame.package);
+    if (app.got_subcommand("converge"))
+        return run(benchConverge(line.converge), line.converge.package);
+    if (app.got_subcommand("lookup"))
+        return run(benchLookup(line.lookup), line.lookup.package);
+    if (app.got_subcommand("rays"))
+        return run(benchRays(line.rays), line.rays.package);
+    return run(benchPrimitives(line.primitives), "lumicut-bench");
 }

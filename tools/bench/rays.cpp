@@ -1,33 +1,18 @@
 #include "tools/bench/rays.h"
 
-#include "runtime/camera.h"
 #include "runtime/stages/rays.h"
 #include "shaders/bench/bench.h"
-
-#include <algorithm>
-#include <array>
 
 namespace
 {
 constexpr std::array kKinds{"primary", "diffuse", "diffuse any-hit"};
+static_assert(kKinds.size() == RayThroughput::kKindCount);
+} // namespace
 
-struct Throughput
+Result<RayThroughput> measureRays(const Device& device, const SceneGpu& scene, const Camera& camera, uint32_t width,
+                                  uint32_t height, uint32_t repeats)
 {
-    std::array<std::vector<double>, kKinds.size()> ms;
-    std::array<uint64_t, kKinds.size()> rays{};
-
-    double median(size_t kind) const
-    {
-        std::vector<double> sorted = ms[kind];
-        std::ranges::sort(sorted);
-        return sorted[sorted.size() / 2];
-    }
-    double megaraysPerSecond(size_t kind) const { return double(rays[kind]) / median(kind) * 1e-3; }
-};
-
-Throughput measure(const Device& device, const SceneGpu& scene, const Camera& camera, const RayBenchOptions& options)
-{
-    const uint32_t count = options.width * options.height;
+    const uint32_t count = width * height;
     const RayStage stage(device, scene);
     const Kernel generate = device.kernel("primary/generate"), diffuse = device.kernel("bench/diffuse");
     const RayQueue primary(device, "bench.primary", count), bounced(device, "bench.bounced", count);
@@ -35,13 +20,13 @@ Throughput measure(const Device& device, const SceneGpu& scene, const Camera& ca
     const Buffer hits = device.array<gpu::Hit>("bench.hits", count), bounced_hits = device.array<gpu::Hit>("bench.bounced_hits", count);
     const Buffer radiance = device.array<gpu::vec3>("bench.radiance", count);
 
-    Throughput result;
+    RayThroughput result;
     constexpr uint32_t kWarmUp = 2;
-    for (uint32_t repeat = 0; repeat < kWarmUp + options.repeats; ++repeat)
+    for (uint32_t repeat = 0; repeat < kWarmUp + repeats; ++repeat)
     {
         Recorder rec(device);
         rec.begin(scene.descriptorSet());
-        gpu::CameraParams view = cameraParams(camera, options.width, options.height);
+        gpu::CameraParams view = cameraParams(camera, width, height);
         view.seed = repeat;
         stage.resize(rec, primary.size, count);
         rec.run(generate, count, view, {{"Rays", primary.rays}});
@@ -68,11 +53,15 @@ Throughput measure(const Device& device, const SceneGpu& scene, const Camera& ca
             result.ms[kind].push_back(times[kind].ms);
     }
     const uint32_t bounced_count = device.download<gpu::QueueSize>(bounced.size, 1)[0].count;
+    if (bounced_count == 0)
+        return Error{ExitCode::kInvalid, "the camera sees no surface, so there is nothing to measure; choose another with --camera"};
     result.rays = {count, bounced_count, bounced_count};
     return result;
 }
 
-void print(const Throughput& result, const Device& device, const package::Package& package, bool json)
+namespace
+{
+void print(const RayThroughput& result, const Device& device, const package::Package& package, bool json)
 {
     const uint64_t triangles = package.triangles().size();
     if (json)
@@ -80,40 +69,26 @@ void print(const Throughput& result, const Device& device, const package::Packag
         fmt::print("{{\"schema\": \"lumicut-bench-rays/1\", \"device\": \"{}\", \"triangles\": {}", device.name(), triangles);
         constexpr std::array kKeys{"primary", "diffuse", "diffuse_any_hit"};
         for (size_t kind = 0; kind < kKinds.size(); ++kind)
-            fmt::print(", \"{}_mrays_per_s\": {:.3f}", kKeys[kind], result.megaraysPerSecond(kind));
+            fmt::print(", \"{}_mrays_per_s\": {:.3f}", kKeys[kind], result.megaraysPerSecond(RayThroughput::Kind(kind)));
         fmt::print("}}\n");
         return;
     }
     fmt::print("{}, {} triangles, {} BVH nodes\n", device.name(), triangles, package.bvhNodes().size());
     for (size_t kind = 0; kind < kKinds.size(); ++kind)
-        fmt::print("  {:<16} {:10.2f} Mrays/s  ({} rays, median {:.3f} ms of {} runs)\n", kKinds[kind], result.megaraysPerSecond(kind),
-                   result.rays[kind], result.median(kind), result.ms[kind].size());
+        fmt::print("  {:<16} {:10.2f} Mrays/s  ({} rays, median {:.3f} ms of {} runs)\n", kKinds[kind], result.megaraysPerSecond(RayThroughput::Kind(kind)),
+                   result.rays[kind], percentile(result.ms[kind], 0.5), result.ms[kind].size());
 }
 } // namespace
 
 Status benchRays(const RayBenchOptions& options)
 {
-    const auto package = package::Package::open(options.package);
-    if (!package)
-        return package.error();
-    const auto camera = chooseCamera(*package, options.camera);
-    if (!camera)
-        return camera.error();
-    const auto instance = Instance::create({});
-    if (!instance)
-        return instance.error();
-    const auto index = selectDevice(instance->devices(), options.device);
-    if (!index)
-        return index.error();
-    const auto device = Device::create(*instance, *index, false);
-    if (!device)
-        return device.error();
-    const auto scene = SceneGpu::create(**device, *package);
-    if (!scene)
-        return scene.error();
-    const Throughput result = measure(**device, **scene, *camera, options);
-    if (result.rays[1] == 0)
-        return Error{ExitCode::kInvalid, "the camera sees no surface, so there is nothing to measure; choose another with --camera"};
-    print(result, **device, *package, options.json);
+    const auto opened = openPackage(options);
+    if (!opened)
+        return opened.error();
+    const auto result =
+        measureRays(*opened->device, *opened->scene, opened->camera, options.width, options.height, options.repeats);
+    if (!result)
+        return result.error();
+    print(*result, *opened->device, opened->package, options.json);
     return Success{};
 }

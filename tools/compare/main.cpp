@@ -19,6 +19,7 @@ struct Options
     std::string reference, test, png;
     float exposure = 0;
     bool json = false;
+    bool tsv = false;
     bool flip_panel = false;
     std::vector<uint32_t> crop; // X0,Y0,X1,Y1 or empty
 };
@@ -82,6 +83,14 @@ std::string jsonText(const Report& report)
         {"start", report.exposures.start}, {"stop", report.exposures.stop}, {"count", report.exposures.count}};
     json["ldr_flip"] = report.ldr.mean;
     return json.dump(2) + "\n";
+}
+
+/// One line for scripts, see README.md.
+std::string tsvText(const Report& report)
+{
+    const Metrics& m = report.metrics;
+    return fmt::format("{:.6f}\t{:.6f}\t{:.6f}\t{:.6g}\t{:.6g}\t{:.6f}\t{:.6f}\t{}\n", m.mean_ratio[0], m.mean_ratio[1], m.mean_ratio[2],
+                       m.relmse, m.relmse_trimmed, report.ldr.mean, report.hdr.mean, m.test_nonfinite);
 }
 
 std::string plainText(const Report& report)
@@ -155,7 +164,7 @@ int run(const Options& options)
         if (const Status written = writePng(options.png, picture.width, picture.height, 3, picture.rgb); !written)
             return fail(options.png, written.error());
     }
-    fmt::print("{}", options.json ? jsonText(report) : plainText(report));
+    fmt::print("{}", options.json ? jsonText(report) : options.tsv ? tsvText(report) : plainText(report));
     return int(ExitCode::kOk);
 }
 
@@ -180,6 +189,7 @@ int main(int argc, char** argv)
         ->delimiter(',')
         ->expected(4);
     app.add_flag("--json", options.json, "print the result as JSON");
+    app.add_flag("--tsv", options.tsv, "print one line of tab-separated figures (see README.md)")->excludes("--json");
     try
     {
         app.parse(argc, argv);

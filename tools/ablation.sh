@@ -1,0 +1,78 @@
+#!/usr/bin/env bash
+# What each part of mode gi is worth: error of the first frame and GPU milliseconds side by side, one setting changed at a
+# time; then the illumination cut's lookups against full kNN.
+#   tools/ablation.sh [OPTION...] [OUTDIR]    OUTDIR: packages and references; default build/truth
+#     --quick            small pictures, references of 256 samples, small counts
+#     --scene NAME       cornell, caustics, atrium, hall or sponza; default atrium
+#     --size WxH         default 320x180
+#     --spp N            samples a pixel of the reference; default 4096
+#     --seeds N          first frames to average over; default 4
+#     --set NAME=VALUE   a setting of all rows; repeatable
+#     --row "NAME=VALUE..."   one more row; repeatable
+# The reference's own noise is part of every error. LUMICUT_BIN=FOLDER uses the programs there instead of building.
+set -euo pipefail
+. "$(dirname "${BASH_SOURCE[0]}")/bench/scenes.sh"
+
+quick=0 scene=atrium size= spp= seeds=4 out=$root/build/truth
+common=() extra=()
+while (($#)); do
+    case $1 in
+    --help | -h) usage_of "${BASH_SOURCE[0]}" && exit ;;
+    --quick) quick=1 ;;
+    --scene | --size | --spp | --seeds | --set | --row)
+        need_value "$1" $#
+        case $1 in
+        --scene) scene=$2 ;;
+        --size) size=$2 ;;
+        --spp) spp=$2 ;;
+        --seeds) seeds=$2 ;;
+        --set) common+=(--set "$2") ;;
+        --row) extra+=("$2") ;;
+        esac
+        shift
+        ;;
+    -*) fail 1 "unknown option $1 (see --help)" ;;
+    *) out=$1 ;;
+    esac
+    shift
+done
+: "${spp:=$((quick ? 256 : 4096))}" "${size:=$((quick ? 128 : 320))x$((quick ? 72 : 180))}"
+mkdir -p "$out"
+build_programs
+
+rows=("")
+rows+=(cut.mode={knn,nearest,leaves,refined})
+rows+=(samples.mode={uniform,seeded,seeded+kmeans})
+rows+=(samples.iterations={0,3})
+if ((quick)); then
+    common=(--set photons.count=20000 --set caustics.photons=20000 --set samples.count=1024 --set gather.rays=64 "${common[@]}")
+    rows+=(samples.count={256,1024} gather.rays={16,64})
+else
+    rows+=(samples.count={1024,2048,4096,8192,16384} gather.rays={64,128,256,512,1024})
+fi
+
+package=$(package_of "$scene")
+[[ -n $package ]] || exit 0
+reference=$(reference_of "$package" "$size" "$spp" all)
+
+echo "$scene, $size, first frame, mean of $seeds seeds, against $spp samples a pixel; ${common[*]:-default settings}"
+printf '%-28s %9s %9s %7s  %9s %9s %9s %9s %9s\n' changed relMSE trimmed ratio 'frame ms' cut samples gather interpol.
+for row in "${rows[@]}" ${extra[@]+"${extra[@]}"}; do
+    changes=()
+    for change in $row; do
+        changes+=(--set "$change")
+    done
+    result=$("$bin/lumicut-bench" converge "$package" "$reference" --frames 1 --seeds "$seeds" --stages \
+        ${common[@]+"${common[@]}"} ${changes[@]+"${changes[@]}"})
+    awk -v changed="${row:-(nothing)}" '
+        $1 == 1 { ratio = ($3 + $4 + $5) / 3; relmse = $6; trimmed = $7 }
+        $1 == "stage" { ms[$2] = $3 }
+        END {
+            printf "%-28s %9.3g %9.3g %7.4f  %9.3f %9.3f %9.3f %9.3f %9.3f\n", changed, relmse, trimmed, ratio, ms["frame"], ms["cut"],
+                ms["samples"], ms["gather"], ms["interpolate"]
+        }' <<<"$result"
+done
+
+echo
+"$bin/lumicut-bench" lookup "$package" --size "$size" --repeats "$seeds" ${common[@]+"${common[@]}"}
+echo "goals: refined <= 2 % mean error, >= 10 x faster than knn"

@@ -1,0 +1,18 @@
+// How soon the picture of a standing camera comes near its reference.
+#pragma once
+#include "runtime/settings.h"
+#include "tools/bench/opened.h"
+
+struct ConvergeBenchOptions : BenchOptions // width and height: the reference's
+{
+    std::filesystem::path reference; // .exr
+    std::string mode = "gi";         // gi, reference
+    uint32_t frames = 1;             // looked at after 1, 2, 4, ... and all of them
+    uint32_t seeds = 1;              // runs, over which errors and times are averaged
+    bool stages = false;             // print the stages' times too
+    Settings settings;
+};
+
+/// Prints seconds and errors after 1, 2, 4, ... frames. The clock runs while frames are recorded and rendered, after a
+/// frame that makes all kernels ready.
+Status benchConverge(const ConvergeBenchOptions& options);

@@ -1,0 +1,233 @@
+#include "tools/bench/frame.h"
+
+#include "runtime/renderer.h"
+#include "tools/bench/rays.h"
+
+#include <nlohmann/json.hpp>
+
+#include <chrono>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+namespace
+{
+constexpr float kDegree = std::numbers::pi_v<float> / 180;
+
+gpu::vec3 add(gpu::vec3 a, gpu::vec3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+gpu::vec3 scale(float s, gpu::vec3 v) { return {s * v.x, s * v.y, s * v.z}; }
+gpu::vec3 cross(gpu::vec3 a, gpu::vec3 b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
+float dot(gpu::vec3 a, gpu::vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+
+/// @param axis of unit length
+gpu::vec3 turned(gpu::vec3 v, gpu::vec3 axis, float radians)
+{
+    const float c = std::cos(radians), s = std::sin(radians);
+    return add(add(scale(c, v), scale(s, cross(axis, v))), scale(dot(axis, v) * (1 - c), axis));
+}
+
+float diagonal(const gpu::SceneInfo& info)
+{
+    const gpu::vec3 extent = add(info.bounds_max, scale(-1, info.bounds_min));
+    return std::sqrt(dot(extent, extent));
+}
+
+/// The given view swaying: 5 degrees to either side, the eye on a circle of 1/400 of the scene's diagonal; no two
+/// successive frames see the same.
+Camera movedCamera(const Camera& camera, const gpu::SceneInfo& info, uint32_t frame)
+{
+    const float phase = float(frame) * 3 * kDegree, radius = diagonal(info) / 400;
+    Camera moved = camera;
+    moved.forward = turned(camera.forward, camera.up, 5 * kDegree * std::sin(phase));
+    const gpu::vec3 right = cross(camera.forward, camera.up);
+    moved.position = add(camera.position, add(scale(radius * std::cos(phase), right), scale(radius * std::sin(phase), camera.up)));
+    return moved;
+}
+
+struct MovingLight
+{
+    uint32_t index;
+    gpu::Light light; // as the package has it
+};
+
+/// The first directional light, else the first point or spot light.
+std::optional<MovingLight> chooseLight(std::span<const gpu::Light> lights)
+{
+    std::optional<MovingLight> chosen;
+    for (uint32_t i = 0; i < lights.size(); ++i)
+    {
+        if (lights[i].kind == gpu::kLightDirectional)
+            return MovingLight{i, lights[i]};
+        if (!chosen && (lights[i].kind == gpu::kLightPoint || lights[i].kind == gpu::kLightSpot))
+            chosen = MovingLight{i, lights[i]};
+    }
+    return chosen;
+}
+
+/// Directional: turned one degree a frame about the vertical, or about x where it shines straight down. Else moved on a
+/// circle of 1/200 of the scene's diagonal, three degrees a frame.
+gpu::Light movedLight(const gpu::Light& light, const gpu::SceneInfo& info, uint32_t frame)
+{
+    gpu::Light moved = light;
+    if (light.kind == gpu::kLightDirectional)
+    {
+        const gpu::vec3 axis = std::abs(light.p1.y) < 0.99f ? gpu::vec3{0, 1, 0} : gpu::vec3{1, 0, 0};
+        moved.p1 = turned(light.p1, axis, float(frame) * kDegree);
+        return moved;
+    }
+    const float phase = float(frame) * 3 * kDegree, radius = diagonal(info) / 200;
+    moved.p0 = add(light.p0, {radius * std::cos(phase), 0, radius * std::sin(phase)});
+    return moved;
+}
+
+struct Measurement
+{
+    std::string motion;
+    StageSamples stages;
+    std::vector<double> record_ms, wall_ms; // on the CPU: recording; from its begin to the finished frame
+    uint64_t device_bytes = 0;
+    std::vector<RayTally::Entry> rays; // of one frame
+};
+
+double since(std::chrono::steady_clock::time_point start)
+{
+    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+}
+
+Measurement measure(const OpenedPackage& opened, const FrameBenchOptions& options)
+{
+    const Mode mode = options.mode == "gi" ? Mode::kGi : options.mode == "direct" ? Mode::kDirect : Mode::kReference;
+    const SceneGpu& scene = *opened.scene;
+    Renderer renderer(*opened.device, scene, mode, options.width, options.height, options.settings);
+    Recorder rec(*opened.device);
+    const auto light = options.still || options.still_light ? std::nullopt : chooseLight(opened.package.lights());
+    Measurement result;
+    result.motion = options.still         ? "nothing moves"
+                    : options.still_light ? "the camera moves, lights stand still"
+                    : !light              ? "the camera moves; no light can, there is no directional, point or spot light"
+                    : light->light.kind == gpu::kLightDirectional ? "the camera and a directional light move"
+                                                                  : "the camera and a point or spot light move";
+    const auto record = [&](uint32_t frame)
+    {
+        rec.begin(scene.descriptorSet());
+        const auto scope = rec.scope("frame");
+        if (light)
+            scene.setLight(rec, light->index, movedLight(light->light, scene.info(), frame));
+        renderer.record(rec, options.still ? opened.camera : movedCamera(opened.camera, scene.info(), frame), options.settings, 0);
+        renderer.display(rec, options.settings, false);
+    };
+    for (uint32_t frame = 0; frame < options.warm_up + options.frames; ++frame)
+    {
+        const auto start = std::chrono::steady_clock::now();
+        record(frame);
+        const double record_ms = since(start);
+        const std::vector<StageTime> times = rec.submitAndWait();
+        if (frame < options.warm_up)
+            continue;
+        result.record_ms.push_back(record_ms);
+        result.wall_ms.push_back(since(start));
+        result.stages.add(times);
+    }
+    result.device_bytes = opened.device->allocatedBytes();
+
+    RayTally tally(*opened.device); // on a frame of its own: counting takes time
+    renderer.countRays(&tally);
+    record(options.warm_up + options.frames / 2);
+    rec.submitAndWait();
+    result.rays = tally.entries();
+    return result;
+}
+
+RayThroughput::Kind kindOf(const RayTally::Entry& rays)
+{
+    return rays.any_hit               ? RayThroughput::kDiffuseAnyHit
+           : rays.scope == "primary" ? RayThroughput::kPrimary
+                                      : RayThroughput::kDiffuse;
+}
+
+/// Milliseconds that the rays would take if nothing but tracing them at the measured throughput took any time.
+double floorMs(const RayTally::Entry& rays, const RayThroughput& throughput)
+{
+    return double(rays.ray_count) / throughput.megaraysPerSecond(kindOf(rays)) * 1e-3;
+}
+
+double floorMs(const Measurement& result, const RayThroughput& throughput)
+{
+    double ms = 0;
+    for (const RayTally::Entry& rays : result.rays)
+        ms += floorMs(rays, throughput);
+    return ms;
+}
+
+void printJson(const FrameBenchOptions& options, const OpenedPackage& opened, const Measurement& result, const RayThroughput& throughput)
+{
+    const auto times = [](const std::vector<double>& ms)
+    { return nlohmann::ordered_json{{"p50_ms", percentile(ms, 0.5)}, {"p95_ms", percentile(ms, 0.95)}}; };
+    nlohmann::ordered_json json{{"schema", "lumicut-bench-frame/1"},
+                                {"device", opened.device->name()},
+                                {"package", options.package.filename().string()},
+                                {"mode", options.mode},
+                                {"motion", result.motion},
+                                {"width", options.width},
+                                {"height", options.height},
+                                {"frames", options.frames},
+                                {"triangles", opened.package.triangles().size()},
+                                {"device_bytes", result.device_bytes},
+                                {"cpu_record", times(result.record_ms)},
+                                {"cpu_wall", times(result.wall_ms)}};
+    json["stages"] = nlohmann::ordered_json::array();
+    for (const StageSamples::Stage& stage : result.stages.stages())
+    {
+        nlohmann::ordered_json entry{{"name", stage.name}};
+        entry.update(times(stage.ms));
+        json["stages"].push_back(entry);
+    }
+    json["mrays_per_s"] = {{"primary", throughput.megaraysPerSecond(RayThroughput::kPrimary)},
+                           {"diffuse", throughput.megaraysPerSecond(RayThroughput::kDiffuse)},
+                           {"diffuse_any_hit", throughput.megaraysPerSecond(RayThroughput::kDiffuseAnyHit)}};
+    json["rays"] = nlohmann::ordered_json::array();
+    for (const RayTally::Entry& rays : result.rays)
+        json["rays"].push_back(
+            {{"stage", rays.scope}, {"any_hit", rays.any_hit}, {"count", rays.ray_count}, {"floor_ms", floorMs(rays, throughput)}});
+    json["floor_ms"] = floorMs(result, throughput);
+    fmt::print("{}\n", json.dump(2));
+}
+
+void print(const FrameBenchOptions& options, const OpenedPackage& opened, const Measurement& result, const RayThroughput& throughput)
+{
+    fmt::print("{}, {} triangles, {}x{}, mode {}, {} frames after {} of warm-up: {}\n", opened.device->name(),
+               opened.package.triangles().size(), options.width, options.height, options.mode, options.frames, options.warm_up,
+               result.motion);
+    const auto row = [](const std::string& name, const std::vector<double>& ms)
+    { fmt::print("  {:<20} {:10.3f} {:10.3f}\n", name, percentile(ms, 0.5), percentile(ms, 0.95)); };
+    fmt::print("  {:<20} {:>10} {:>10}\n", "GPU ms", "p50", "p95");
+    for (const StageSamples::Stage& stage : result.stages.stages())
+        row(stage.name, stage.ms);
+    row("CPU: recording", result.record_ms);
+    row("CPU: whole frame", result.wall_ms);
+    fmt::print("  device memory {:.1f} MiB\n", double(result.device_bytes) / (1 << 20));
+    fmt::print("  {:<20} {:>10} {:>12} {:>10}\n", "rays of a frame", "count", "Mrays/s", "floor ms");
+    for (const RayTally::Entry& rays : result.rays)
+        fmt::print("  {:<20} {:>10} {:>12.2f} {:>10.3f}\n", rays.scope + (rays.any_hit ? " (shadow)" : ""), rays.ray_count,
+                   throughput.megaraysPerSecond(kindOf(rays)), floorMs(rays, throughput));
+    const double floor = floorMs(result, throughput), frame = result.stages.median("frame");
+    fmt::print("  tracing them alone would take {:.3f} ms, {:.1f} % of the median frame\n", floor, 100 * floor / frame);
+}
+} // namespace
+
+Status benchFrame(const FrameBenchOptions& options)
+{
+    const auto opened = openPackage(options);
+    if (!opened)
+        return opened.error();
+    if (const Status status = Renderer::checkSize(*opened->device, options.width, options.height); !status)
+        return status;
+    constexpr uint32_t kRepeats = 10; // of the measurement of throughput
+    const auto throughput =
+        measureRays(*opened->device, *opened->scene, opened->camera, options.width, options.height, kRepeats);
+    if (!throughput)
+        return throughput.error();
+    const Measurement result = measure(*opened, options);
+    (options.json ? printJson : print)(options, *opened, result, *throughput);
+    return Success{};
+}

@@ -1,0 +1,17 @@
+// What a frame costs, stage by stage, while camera and light move.
+#pragma once
+#include "runtime/settings.h"
+#include "tools/bench/opened.h"
+
+struct FrameBenchOptions : BenchOptions
+{
+    std::string mode = "gi"; // gi, direct, reference
+    uint32_t frames = 120;   // timed
+    uint32_t warm_up = 8;    // before them
+    bool still = false;      // neither camera nor light moves
+    bool still_light = false;
+    Settings settings;
+};
+
+/// Prints p50 and p95 of each stage, CPU time, memory, and the rays of a frame against the measured ray throughput.
+Status benchFrame(const FrameBenchOptions& options);

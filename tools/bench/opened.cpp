@@ -1,0 +1,50 @@
+#include "tools/bench/opened.h"
+
+#include <algorithm>
+
+Result<OpenedPackage> openPackage(const BenchOptions& options)
+{
+    auto package = package::Package::open(options.package);
+    if (!package)
+        return package.error();
+    const auto camera = chooseCamera(*package, options.camera);
+    if (!camera)
+        return camera.error();
+    const auto instance = Instance::create({});
+    if (!instance)
+        return instance.error();
+    const auto index = selectDevice(instance->devices(), options.device);
+    if (!index)
+        return index.error();
+    auto device = Device::create(*instance, *index, false);
+    if (!device)
+        return device.error();
+    auto scene = SceneGpu::create(**device, *package);
+    if (!scene)
+        return scene.error();
+    return OpenedPackage{
+        .package = std::move(*package), .device = std::move(*device), .scene = std::move(*scene), .camera = *camera};
+}
+
+double percentile(std::vector<double> values, double fraction)
+{
+    std::ranges::sort(values);
+    return values[std::min(values.size() - 1, size_t(double(values.size()) * fraction))];
+}
+
+void StageSamples::add(const std::vector<StageTime>& times)
+{
+    for (const StageTime& time : times)
+    {
+        auto stage = std::ranges::find(stages_, time.name, &Stage::name);
+        if (stage == stages_.end())
+            stage = stages_.insert(stages_.end(), Stage{.name = time.name, .ms = {}});
+        stage->ms.push_back(time.ms);
+    }
+}
+
+double StageSamples::median(std::string_view name) const
+{
+    const auto stage = std::ranges::find(stages_, name, &Stage::name);
+    return stage == stages_.end() ? 0 : percentile(stage->ms, 0.5);
+}

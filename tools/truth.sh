@@ -1,0 +1,91 @@
+#!/usr/bin/env bash
+# How true the pictures of mode gi are: one table of errors against the path-traced reference, with the goals.
+#   tools/truth.sh [OPTION...] [OUTDIR]    OUTDIR: packages, references and pictures; default build/truth
+#     --quick            small pictures, references of 256 samples, 16 frames
+#     --scenes A,B,...   of cornell, caustics, atrium, hall, sponza; default all of which the files are there
+#     --spp N            samples a pixel of the references; default 4096
+#     --frames N         frames of the second picture; default 256
+#     --size WxH         of all pictures; default 256x256 for the boxes, 320x180 for the rest
+#     --terms            also each light-path term alone
+#     --set NAME=VALUE   a setting of mode gi; repeatable
+# The reference's own noise is part of every error. References are kept and found again by the package's bytes: delete
+# them when the path tracer has changed. LUMICUT_BIN=FOLDER uses the programs there instead of building.
+set -euo pipefail
+. "$(dirname "${BASH_SOURCE[0]}")/bench/scenes.sh"
+
+quick=0 terms=0 spp= frames= size= scenes=cornell,caustics,atrium,hall,sponza out=$root/build/truth
+settings=()
+while (($#)); do
+    case $1 in
+    --help | -h) usage_of "${BASH_SOURCE[0]}" && exit ;;
+    --quick) quick=1 ;;
+    --terms) terms=1 ;;
+    --scenes | --spp | --frames | --size | --set)
+        need_value "$1" $#
+        case $1 in
+        --scenes) scenes=$2 ;;
+        --spp) spp=$2 ;;
+        --frames) frames=$2 ;;
+        --size) size=$2 ;;
+        --set) settings+=(--set "$2") ;;
+        esac
+        shift
+        ;;
+    -*) fail 1 "unknown option $1 (see --help)" ;;
+    *) out=$1 ;;
+    esac
+    shift
+done
+: "${spp:=$((quick ? 256 : 4096))}" "${frames:=$((quick ? 16 : 256))}"
+mkdir -p "$out"
+build_programs
+
+size_of() {
+    case $1 in
+    cornell | caustics) echo "${size:-$((quick ? 96 : 256))x$((quick ? 96 : 256))}" ;;
+    *) echo "${size:-$((quick ? 128 : 320))x$((quick ? 72 : 180))}" ;;
+    esac
+}
+
+# row SCENE PACKAGE SIZE TERM FRAMES
+row() {
+    local reference picture figures
+    reference=$(reference_of "$2" "$3" "$spp" "$4")
+    picture=$out/gi-$1-$3-$4-$5.exr
+    "$bin/lumicut-play" "$2" --headless --mode gi --size "$3" --frames "$5" --set "term=$4" "${settings[@]}" --output "$picture" \
+        2>"$out/gi.log" || { cat "$out/gi.log" >&2 && fail 4 "mode gi failed on $2"; }
+    figures=$("$bin/lumicut-compare" "$reference" "$picture" --tsv)
+    awk -F '\t' -v scene="$1" -v term="$4" -v frames="$5" '
+        function judged(name, good) { verdict = verdict " " name (good ? " ok" : " MISSED"); missed += !good }
+        function within(slack,    i) { for (i = 1; i <= 3; ++i) if ($i < 1 - slack || $i > 1 + slack) return 0; return 1 }
+        {
+            if (term != "all") judged("ratio 0.97-1.03", within(0.03))
+            else if (frames == 1) {
+                judged("ratio 0.98-1.02", within(0.02))
+                flip = scene == "cornell" || scene == "caustics" ? 0.06 : 0.08
+                judged("LDR-FLIP<=" flip, $6 <= flip)
+            } else {
+                judged("ratio 0.995-1.005", within(0.005))
+                if (frames >= 256) judged("relMSE<=0.001", $4 <= 0.001)
+            }
+            if ($8 > 0) judged($8 " non-finite pixels", 0)
+            printf "%-9s %-9s %6d  %7.4f %7.4f %7.4f  %9.3g %9.3g  %8.4f %8.4f  %s\n", scene, term, frames, $1, $2, $3, $4, $5,
+                $6, $7, substr(verdict, 2)
+        }' <<<"$figures"
+}
+
+echo "mode gi against the reference at $spp samples a pixel; ${settings[*]:-default settings}"
+printf '%-9s %-9s %6s  %7s %7s %7s  %9s %9s  %8s %8s  %s\n' \
+    scene term frames 'ratio R' 'ratio G' 'ratio B' relMSE trimmed LDR-FLIP HDR-FLIP goals
+for scene in ${scenes//,/ }; do
+    package=$(package_of "$scene")
+    [[ -n $package ]] || continue
+    scene_size=$(size_of "$scene")
+    row "$scene" "$package" "$scene_size" all 1
+    row "$scene" "$package" "$scene_size" all "$frames"
+    if ((terms)); then
+        for term in emission direct caustics indirect glossy; do
+            row "$scene" "$package" "$scene_size" $term "$frames"
+        done
+    fi
+done
