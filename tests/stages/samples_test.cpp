@@ -196,7 +196,7 @@ TEST_F(SamplesTest, AreNoMoreThanThereAreShadingPoints)
     aside.forward = normalize({1, -0.25f, -0.3f});
     aside.up = normalize(cross(cross(aside.forward, {0, 1, 0}), aside.forward));
     SceneBuilder builder;
-    builder.quad({1.2f, 0, 1.5f}, {0.6f, 0, 0}, {0, 0.6f, 0}, builder.material(lambert(0.5)));
+    builder.quad({1.2f, 0, 1.5f}, {0.5f, 0, 0}, {0, 0.5f, 0}, builder.material(lambert(0.5)));
     const auto path = builder.compile();
     const auto scene = load(path);
     const ShadingPoints few(device(), *scene, path, aside, kWidth, kHeight);

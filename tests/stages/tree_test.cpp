@@ -34,6 +34,11 @@ struct Case
     std::vector<gpu::vec4> spheres;
 };
 
+void PrintTo(const Case& value, std::ostream* out) // NOLINT: GoogleTest's name
+{
+    *out << value.name;
+}
+
 std::vector<gpu::vec4> randomSpheres(uint32_t count, float radius, gpu::uvec3 cells = {kCells, kCells, kCells})
 {
     Random random(3);
