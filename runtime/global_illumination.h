@@ -1,10 +1,11 @@
 // Global illumination after Wang et al. 2009: photons, their tree, the illumination cut, irradiance samples, final
-// gathering, interpolation and caustics, in this order, all on the GPU.
+// gathering, interpolation, glossy reflection and caustics, all on the GPU.
 #pragma once
 #include "runtime/settings.h"
 #include "runtime/stages/caustics.h"
 #include "runtime/stages/direct.h"
 #include "runtime/stages/gather.h"
+#include "runtime/stages/glossy.h"
 #include "runtime/stages/interpolate.h"
 #include "runtime/stages/primary.h"
 
@@ -15,11 +16,19 @@ public:
     /// photons, samples and rays, not for more.
     GlobalIllumination(const Device& device, const SceneGpu& scene, const Settings& settings, uint32_t width, uint32_t height);
 
-    /// Records one frame: one sample a pixel, vec3[width * height].
+    /// Records one frame: one sample a pixel, vec3[width * height]; of settings.term alone where that is not all.
     /// @param camera with first_sample: the frame's index in a standing picture
     const Buffer& record(Recorder& rec, const RayStage& rays, const gpu::CameraParams& camera, const Settings& settings);
 
 private:
+    struct Frame;
+    void recordDirect(const Frame& frame) const;
+    PhotonTreeStage::Output recordPhotons(const Frame& frame) const;
+    CutStage::Output recordCut(const Frame& frame, const PhotonTreeStage::Output& map) const;
+    void recordIndirect(const Frame& frame, const PhotonTreeStage::Output& map, const CutStage::Output& cut) const;
+    void recordGlossy(const Frame& frame, const CutStage::Output& cut) const;
+    void recordCaustics(const Frame& frame) const;
+
     uint32_t width_, height_;
     float diagonal_, longest_side_; // of the scene, metres
     bool has_specular_;
@@ -31,5 +40,6 @@ private:
     SamplesStage samples_;
     GatherStage gather_;
     InterpolateStage interpolate_;
+    GlossyStage glossy_;
     CausticsStage caustics_;
 };

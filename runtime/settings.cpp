@@ -33,7 +33,7 @@ constexpr std::array kKnobs{
     Knob{"caustics.radius", &Settings::caustic_radius, 1e-4, 1, "of the scene's diagonal", "how far that estimate may reach"},
     Knob{"reference_depth", &Settings::reference_depth, 1, 1024, "", "most vertices of a path of the reference"},
     Knob{"term", &Settings::term, gpu::kTermAll, gpu::kTermGlossy, "",
-         "light paths shown in mode reference; the others sum to all",
+         "light paths shown in modes gi and reference; the others sum to all",
          "all,emission,direct,caustics,indirect,glossy"},
     Knob{"exposure", &Settings::exposure, -20, 20, "stops", "brightness of the display; EXR files stay linear"},
     Knob{"tonemap", &Settings::tonemap, 0, 2, "", "display transform", "srgb,aces,agx"},

@@ -50,7 +50,7 @@ void SamplesStage::assign(Recorder& rec, const gpu::ClusterParams& params) const
     tree_.record(rec, cluster_spheres_, cluster_size_);
     rec.run(assign_, point_count_, params,
             {{"Size", cluster_size_}, {"Points", points_}, {"Clusters", clusters_}, {"TreeNodes", tree_.nodes()}, {"Order", tree_.order()},
-             {"Sums", sums_}, {"Owners", owners_}});
+             {"Sums", sums_}, {"Owners", owners_}, {"Seeds", seeds_}});
 }
 
 SamplesStage::Output SamplesStage::record(Recorder& rec, const RayStage& rays, const Input& in) const
@@ -94,7 +94,7 @@ SamplesStage::Output SamplesStage::record(Recorder& rec, const RayStage& rays, c
     rec.runIndirect(occupied_kernel_, cluster_size_, 0, NoParams{},
                     {{"Size", cluster_size_}, {"Sums", sums_}, {"Flags", occupied_flags_}});
     sample_compaction_.record(rec, occupied_flags_, occupied_, size_, cluster_size_);
-    rec.runIndirect(place_, size_, 0, NoParams{},
+    rec.runIndirect(place_, size_, 0, clustering,
                     {{"Size", size_}, {"Occupied", occupied_}, {"Sums", sums_}, {"Points", points_}, {"Samples", samples_},
                      {"Spheres", spheres_}});
     return {.size = size_, .samples = samples_, .spheres = spheres_};

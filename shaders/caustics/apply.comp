@@ -28,6 +28,7 @@ void main()
     if (reflectance == vec3(0.0))
         return;
     DensityEstimate estimate =
-        estimateIrradiance(s.position, s.geometric_normal, size.count, params.photon_count, square(params.radius));
+        estimateIrradiance(s.position, s.geometric_normal, size.count, params.photon_count, square(params.radius),
+                           square(params.radius) / 64.0);
     radiance[pixel] += reflectance * kInvPi * estimate.irradiance;
 }

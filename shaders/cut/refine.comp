@@ -29,8 +29,10 @@ void main()
         return;
     uint id = work[i];
     PhotonNode node = photonNode(id);
-    DensityEstimate estimate =
-        estimateIrradiance(node.center, node.normal, size.count, params.photon_count, square(params.radius));
+    // As if the node's photons lay evenly over its area; half as many again, so that one look mostly suffices.
+    float guess2 = 1.5 * kInvPi * node.area * float(params.photon_count) / float(node.count);
+    DensityEstimate estimate = estimateIrradiance(node.center, node.normal, size.count, params.photon_count, square(params.radius),
+                                                  guess2 > 0.0 ? guess2 : square(params.radius) / 64.0);
     float exact = luminance(estimate.irradiance);
     bool agrees = node.flat_ && abs(exact - node.irradiance) <= params.difference * max(exact, node.irradiance);
     if (params.last != 0u || agrees || node.count < 2u * kCutFewest)

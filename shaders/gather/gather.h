@@ -10,8 +10,9 @@ struct GatherState // of a ray between two links of its specular chain
 {
     vec3 throughput;
     uint medium;
+    uint specular; // delta events so far
 };
-GPU_SIZE(GatherState, 16);
+GPU_SIZE(GatherState, 20);
 
 struct Gathered // what one ray brought
 {

@@ -27,5 +27,5 @@ vec3 irradianceAt(vec3 x, vec3 n)
     float support;
     return cutIrradiance(x, n, params.radius * params.radius, support);
 }
-#include "shaders/gather/link.glsl"
+#include "shaders/lib/gather_link.glsl"
 #include "shaders/gather/link_body.glsl"

@@ -6,12 +6,12 @@ void main()
         return;
     Ray ray = rays[i];
     Hit hit = hits[i];
-    GatherState state = GatherState(vec3(1.0), kNone);
+    GatherState state = GatherState(vec3(1.0), kNone, 0u);
     if (params.depth > 0u)
         state = states[ray.path];
     uint sample_ = ray.path / params.ray_count;
     Sampler sampler_ = Sampler(hash(params.seed, sample_), ray.path % params.ray_count, 1u + params.depth);
-    Link link = followLink(ray, hit, state, sampler_);
+    Link link = followLink(ray, hit, state, sampler_, false);
     bool goes_on = link.goes_on && params.depth < params.depth_limit;
     if (params.depth == 0u)
         gathered[ray.path] = Gathered(link.radiance, hit.slot == kNone ? 0.0 : 1.0 / max(hit.t, 1e-6));

@@ -22,7 +22,8 @@ layout(set = 1, binding = 9, scalar) readonly buffer Photons { Photon photons[];
 
 vec3 irradianceAt(vec3 x, vec3 n)
 {
-    return estimateIrradiance(x, n, size.count, params.photon_count, params.radius * params.radius).irradiance;
+    return estimateIrradiance(x, n, size.count, params.photon_count, params.radius * params.radius,
+                              params.radius * params.radius / 64.0).irradiance;
 }
-#include "shaders/gather/link.glsl"
+#include "shaders/lib/gather_link.glsl"
 #include "shaders/gather/link_body.glsl"

@@ -88,5 +88,5 @@ void main()
     Bsdf b = bsdfAt(materialAt(s), s.front);
     vec3 reflectance = point.throughput * diffuseReflectance(b, max(0.0, -dot(s.normal, point.direction)));
     if (reflectance != vec3(0.0))
-        radiance[pixel] += reflectance * kInvPi * interpolatedIrradiance(s.position, s.normal);
+        radiance[pixel] += reflectance * kInvPi * interpolatedIrradiance(s.position, s.smooth_normal);
 }

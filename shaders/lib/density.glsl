@@ -19,13 +19,14 @@ float photonDistance2(Photon photon, vec3 x, vec3 n)
 }
 
 /// Squared distance within which there are `wanted` photons, or radius2 where there are fewer.
+/// @param guess2 of that distance; the search widens from it, so a good one saves looking at photons far away
 /// @param found photons within that distance
-float nearestRadius2(vec3 x, vec3 n, uint photon_count, uint wanted, float radius2, out uint found)
+float nearestRadius2(vec3 x, vec3 n, uint photon_count, uint wanted, float radius2, float guess2, out uint found)
 {
     uint bins[kDensityBins];
-    float low = 0.0, high = radius2;
+    float low = 0.0, high = min(guess2, radius2);
     uint below = 0u;
-    for (uint refinement = 0u; refinement < kDensityRefinements; ++refinement)
+    for (uint refinement = 0u; refinement < kDensityRefinements;)
     {
         for (uint b = 0u; b < kDensityBins; ++b)
             bins[b] = 0u;
@@ -49,7 +50,14 @@ float nearestRadius2(vec3 x, vec3 n, uint photon_count, uint wanted, float radiu
             below = found;
         }
         if (b == kDensityBins)
-            return high;
+        {
+            if (high >= radius2 || below > found)
+                return high;
+            high = min(high * max(2.0, min(16.0, 1.5 * float(wanted) / float(max(found, 1u)))), radius2);
+            below = 0u;
+            continue;
+        }
+        ++refinement;
         float width = (high - low) / float(kDensityBins);
         high = low + float(b + 1u) * width;
         low += float(b) * width;
@@ -66,11 +74,11 @@ struct DensityEstimate
 };
 
 /// Irradiance at x from the `wanted` nearest photons within sqrt(radius2), weighted by (1 - d^2/r^2)^2, whose integral
-/// over the disc is pi r^2 / 3 (Silverman 1986). 0 where there are fewer than kLeastPhotons.
-DensityEstimate estimateIrradiance(vec3 x, vec3 n, uint photon_count, uint wanted, float radius2)
+/// over the disc is pi r^2 / 3 (Silverman 1986). 0 where there are fewer than kLeastPhotons. @param guess2 of their distance
+DensityEstimate estimateIrradiance(vec3 x, vec3 n, uint photon_count, uint wanted, float radius2, float guess2)
 {
     uint found;
-    float within2 = nearestRadius2(x, n, photon_count, wanted, radius2, found);
+    float within2 = nearestRadius2(x, n, photon_count, wanted, radius2, guess2, found);
     vec3 sum = vec3(0.0);
     uint first, end;
     beginRanges(photon_count);

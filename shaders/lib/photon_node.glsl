@@ -20,6 +20,7 @@ struct PhotonNode
     vec3 center;      // metres
     vec3 normal;      // unit
     float longest;    // metres: longest side of its box
+    float area;       // square metres: that its photons lie on; 0 for a single one
     float irradiance; // luminance of E~
     bool flat_;       // its photons lie near one plane and face one way: E~ means something
     uint count;       // photons
@@ -28,7 +29,7 @@ struct PhotonNode
 PhotonNode photonNode(uint id)
 {
     if (isPhoton(id))
-        return PhotonNode(photons[id + 1u - size.count].position, unpackNormal(photons[id + 1u - size.count].normal), 0.0, 0.0, true, 1u);
+        return PhotonNode(photons[id + 1u - size.count].position, unpackNormal(photons[id + 1u - size.count].normal), 0.0, 0.0, 0.0, true, 1u);
     PhotonSums s = sums[id];
     vec3 extent = max(tree_nodes[id].left_max, tree_nodes[id].right_max) - min(tree_nodes[id].left_min, tree_nodes[id].right_min);
     float longest = maxComponent(extent);
@@ -39,7 +40,7 @@ PhotonNode photonNode(uint id)
     // long, narrow one.
     float area = max(n.x * extent.y * extent.z + n.y * extent.x * extent.z + n.z * extent.x * extent.y, 1e-20);
     bool flat_ = resultant > 0.8 * s.weight && dot(n, extent) < 0.5 * longest; // half angle of a uniform cone: 53 degrees
-    return PhotonNode(s.position / max(s.weight, 1e-30), normal, longest, s.weight / area, flat_, tree_nodes[id].count);
+    return PhotonNode(s.position / max(s.weight, 1e-30), normal, longest, area, s.weight / area, flat_, tree_nodes[id].count);
 }
 
 #endif

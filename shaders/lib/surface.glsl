@@ -10,6 +10,7 @@ struct Surface
     vec3 position;         // metres, world
     vec3 geometric_normal; // unit, on the side the ray came from
     vec3 normal;           // shading normal, unit, same side
+    vec3 smooth_normal;    // the same before the normal map: what changes slowly along a surface
     bool front;            // the ray met the triangle's front
     float area;            // square metres, of the triangle
     vec2 uv0, uv1;
@@ -83,6 +84,7 @@ Surface surfaceAt(uint slot, vec2 barycentrics, vec3 direction)
     vec3 normal = interpolate(weights, unpackNormal(loadVertex(v.x).normal), unpackNormal(loadVertex(v.y).normal),
                               unpackNormal(loadVertex(v.z).normal));
     s.normal = dot(normal, normal) > 1e-12 ? normalize(normal) : s.geometric_normal;
+    s.smooth_normal = s.normal;
     if (hasFeature(kFeatureNormalMaps) && loadMaterial(s.material).normal_texture != kNone)
         s.normal = mappedNormal(s.normal, v, weights, s);
 
@@ -91,6 +93,7 @@ Surface surfaceAt(uint slot, vec2 barycentrics, vec3 direction)
     {
         s.geometric_normal = -s.geometric_normal;
         s.normal = -s.normal;
+        s.smooth_normal = -s.smooth_normal;
     }
     // A shading normal that looks away from the viewer is bent back until it just sees him.
     float facing = dot(s.normal, direction);

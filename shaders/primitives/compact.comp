@@ -6,6 +6,7 @@
 // The indices of the flags that are set, in order, each workgroup's after those of the groups before.
 
 layout(local_size_x = kPrimitivesGroupSize) in;
+layout(constant_id = 0) const uint kItems = 0u; // per thread of a tile; 0: the share is one tile
 
 layout(push_constant, scalar) uniform Push { ScanParams params; };
 layout(set = 1, binding = 0, scalar) readonly buffer Size { QueueSize size; };
@@ -19,24 +20,25 @@ layout(set = 1, binding = 4, scalar) writeonly buffer Selected { QueueSize selec
 
 void main()
 {
-    const uint count = min(size.count, params.max_count), share = shareOf(count, params.group_count, kScanTile);
+    const uint count = min(size.count, params.max_count);
+    const uint share = shareOf(count, params.group_count, params.least_share);
     const uint group = gl_WorkGroupID.x, begin = group * share, end = min(begin + share, count);
     if (begin >= count && group > 0u)
         return;
     uint carry = 0u;
     if (group > 0u)
         groupExclusiveSum(gl_LocalInvocationIndex < group ? group_sums[gl_LocalInvocationIndex] : 0u, carry);
-    for (uint tile = begin; tile < end; tile += kScanTile)
+    const uint items = kItems > 0u ? kItems : share / kPrimitivesGroupSize;
+    for (uint tile = begin; tile < end; tile += items * kPrimitivesGroupSize)
     {
-        const uint first = tile + gl_LocalInvocationIndex * kScanItems;
-        uint set = 0u, tile_sum; // a bit for each item
-        for (uint i = 0u; i < kScanItems; ++i)
-            if (first + i < end && flags[first + i] != 0u)
-                set |= 1u << i;
-        uint at = carry + groupExclusiveSum(bitCount(set), tile_sum);
-        for (uint i = 0u; i < kScanItems; ++i)
-            if ((set & (1u << i)) != 0u)
-                indices[at++] = first + i;
+        const uint first = tile + gl_LocalInvocationIndex * items, last = min(first + items, end);
+        uint set = 0u, tile_sum;
+        for (uint i = first; i < last; ++i)
+            set += uint(flags[i] != 0u);
+        uint at = carry + groupExclusiveSum(set, tile_sum);
+        for (uint i = first; i < last; ++i)
+            if (flags[i] != 0u)
+                indices[at++] = i;
         carry += tile_sum;
     }
     if (begin + share >= count && gl_LocalInvocationIndex == 0u)

@@ -25,7 +25,8 @@ shared uint s_offsets[kMaxDigits * kLanes];
 void main()
 {
     const uint worker = gl_GlobalInvocationID.x, lane = gl_LocalInvocationIndex;
-    const uint count = min(size.count, params.max_count), share = shareOf(count, params.worker_count, kLaneLeast);
+    const uint count = min(size.count, params.max_count);
+    const uint share = shareOf(count, params.worker_count, kLaneLeast);
     const uint begin = worker * share, end = min(begin + share, count);
     if (begin >= count)
         return;

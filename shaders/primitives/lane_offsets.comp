@@ -16,8 +16,10 @@ layout(set = 1, binding = 1, scalar) buffer Counts { uint counts[]; }; // [worke
 
 void main()
 {
-    const uint count = min(size.count, params.max_count), share = shareOf(count, params.worker_count, kLaneLeast);
-    const uint workers = (count + share - 1u) / share, digit = gl_LocalInvocationIndex, digits = 1u << params.digit_bits;
+    const uint count = min(size.count, params.max_count);
+    const uint share = shareOf(count, params.worker_count, kLaneLeast);
+    const uint workers = (count + share - 1u) / share, digit = gl_LocalInvocationIndex;
+    const uint digits = 1u << params.digit_bits;
     uint sum = 0u, total;
     if (digit < digits)
         for (uint w = 0u; w < workers; ++w)

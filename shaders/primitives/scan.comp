@@ -6,6 +6,7 @@
 // The exclusive scan of each workgroup's share, on top of the sums of the groups before.
 
 layout(local_size_x = kPrimitivesGroupSize) in;
+layout(constant_id = 0) const uint kItems = 0u; // per thread of a tile; 0: the share is one tile
 
 layout(push_constant, scalar) uniform Push { ScanParams params; };
 layout(set = 1, binding = 0, scalar) readonly buffer Size { QueueSize size; };
@@ -19,29 +20,27 @@ layout(set = 1, binding = 4, scalar) writeonly buffer Total { uint total_sum; };
 
 void main()
 {
-    const uint count = min(size.count, params.max_count), share = shareOf(count, params.group_count, kScanTile);
+    const uint count = min(size.count, params.max_count);
+    const uint share = shareOf(count, params.group_count, params.least_share);
     const uint group = gl_WorkGroupID.x, begin = group * share, end = min(begin + share, count);
     if (begin >= count && group > 0u)
         return;
     uint carry = 0u;
     if (group > 0u)
         groupExclusiveSum(gl_LocalInvocationIndex < group ? group_sums[gl_LocalInvocationIndex] : 0u, carry);
-    for (uint tile = begin; tile < end; tile += kScanTile)
+    const uint items = kItems > 0u ? kItems : share / kPrimitivesGroupSize;
+    for (uint tile = begin; tile < end; tile += items * kPrimitivesGroupSize)
     {
-        const uint first = tile + gl_LocalInvocationIndex * kScanItems;
-        uint items[kScanItems];
+        const uint first = tile + gl_LocalInvocationIndex * items, last = min(first + items, end);
         uint sum = 0u, tile_sum;
-        for (uint i = 0u; i < kScanItems; ++i)
-        {
-            items[i] = first + i < end ? values[first + i] : 0u;
-            sum += items[i];
-        }
+        for (uint i = first; i < last; ++i)
+            sum += values[i];
         uint before = carry + groupExclusiveSum(sum, tile_sum);
-        for (uint i = 0u; i < kScanItems; ++i)
+        for (uint i = first; i < last; ++i)
         {
-            if (first + i < end)
-                sums[first + i] = before;
-            before += items[i];
+            const uint value = values[i]; // sums may be the same buffer
+            sums[i] = before;
+            before += value;
         }
         carry += tile_sum;
     }

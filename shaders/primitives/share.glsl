@@ -1,4 +1,4 @@
-// How a count is divided among workers: contiguous shares of whole tiles, so that what comes earlier is a lower worker's.
+// How a count is divided among workers: contiguous shares of whole tiles, the first to the first worker.
 
 uint shareOf(uint count, uint worker_count, uint tile)
 {

@@ -18,7 +18,8 @@ layout(set = 1, binding = 2, scalar) writeonly buffer GroupSums { uint group_sum
 
 void main()
 {
-    const uint count = min(size.count, params.max_count), share = shareOf(count, params.group_count, kScanTile);
+    const uint count = min(size.count, params.max_count);
+    const uint share = shareOf(count, params.group_count, params.least_share);
     const uint begin = gl_WorkGroupID.x * share, end = min(begin + share, count);
     if (begin >= count) // nobody asks for this group's sum
         return;

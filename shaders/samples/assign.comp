@@ -19,7 +19,23 @@ layout(set = 1, binding = 3, scalar) readonly buffer TreeNodes { TreeNode tree_n
 layout(set = 1, binding = 4, scalar) readonly buffer Order { uint order[]; };
 layout(set = 1, binding = 5, scalar) buffer Sums { ClusterSums sums[]; };
 layout(set = 1, binding = 6, scalar) writeonly buffer Owners { uvec2 owners[]; }; // by point: cluster, bits of eps
+layout(set = 1, binding = 7, scalar) readonly buffer Seeds { uint seeds[]; };     // by cluster: the point it started at, ascending
 #include "shaders/lib/tree.glsl"
+
+/// The cluster whose seed is next to the point in Z-order: near enough that the search around it is short.
+uint neighbourInOrder(uint point)
+{
+    uint low = 0u, high = size.count; // seeds[low] <= point < seeds[high]
+    while (high - low > 1u)
+    {
+        uint middle = (low + high) / 2u;
+        if (seeds[middle] <= point)
+            low = middle;
+        else
+            high = middle;
+    }
+    return low;
+}
 
 void main()
 {
@@ -31,10 +47,10 @@ void main()
         return;
     vec3 x = points[p].position;
     vec3 n = unpackNormal(points[p].normal);
-    float best = 1e30;
-    uint owner = 0u;
+    uint owner = neighbourInOrder(p);
+    float best = geometricVariation(params.alpha, x, n, clusters[owner].position, unpackNormal(clusters[owner].normal));
+    float radius2 = square(best / params.alpha);
     uint first, end;
-    float radius2 = 1e30;
     beginRanges(size.count);
     while (nextRange(x, radius2, first, end))
         for (uint i = first; i < end; ++i)
@@ -60,5 +76,5 @@ void main()
     vec3 d = x - clusters[owner].position;
     atomicAdd(sums[owner].count, 1u);
     atomicMin(sums[owner].least_eps, floatBitsToUint(best));
-    atomicMax(sums[owner].farthest2, floatBitsToUint(dot(d, d)));
+    atomicAdd(sums[owner].distance, uint(min(1.0, length(d) / maxComponent(extent)) * params.fixed_scale));
 }

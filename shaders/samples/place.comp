@@ -8,6 +8,7 @@
 // A sample at the shading point that is nearest to its cluster's centre. One thread per sample.
 
 layout(local_size_x = kSamplesGroupSize) in;
+layout(push_constant, scalar) uniform Params { ClusterParams params; };
 
 layout(set = 1, binding = 0, scalar) readonly buffer Size { QueueSize size; };
 layout(set = 1, binding = 1, scalar) readonly buffer Occupied { uint occupied[]; };
@@ -16,8 +17,9 @@ layout(set = 1, binding = 3, scalar) readonly buffer Points { SamplePoint points
 layout(set = 1, binding = 4, scalar) writeonly buffer Samples { Sample samples[]; };
 layout(set = 1, binding = 5, scalar) writeonly buffer Spheres { vec4 spheres[]; };
 
-// A cluster of radius rho has neighbours at 2 rho and the next ones at 4 rho: this far it overlaps both rings' halves.
-const float kSupportRadii = 3.0;
+// A round cluster of radius rho has a mean distance of 2/3 rho; its neighbours lie at 2 rho, the next ones at 3.5 and 4 rho.
+// Reaching 4 rho it shares every place with about a dozen others.
+const float kSupportDistances = 6.0;
 
 void main()
 {
@@ -27,7 +29,9 @@ void main()
     ClusterSums s = sums[occupied[i]];
     SamplePoint point = points[s.nearest];
     float diagonal = length(scene.bounds_max - scene.bounds_min);
-    float support = clamp(kSupportRadii * sqrt(uintBitsToFloat(s.farthest2)), 1e-3 * diagonal, 0.1 * diagonal);
+    vec3 extent = scene.bounds_max - scene.bounds_min;
+    float distance_ = float(s.distance) / (params.fixed_scale * float(s.count)) * maxComponent(extent);
+    float support = clamp(kSupportDistances * distance_, 1e-3 * diagonal, 0.1 * diagonal);
     samples[i] = Sample(point.position, point.normal, vec3(0.0), support, 0.0, point.pixel);
     spheres[i] = vec4(point.position, support);
 }

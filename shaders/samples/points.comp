@@ -39,5 +39,5 @@ void main()
     ShadingPoint point = shading[index];
     Surface s = surfaceAt(point.slot, point.barycentrics, point.direction);
     if (diffuseColor(bsdfAt(materialAt(s), s.front)) != vec3(0.0))
-        points[i] = SamplePoint(s.position, packNormal(s.normal), index);
+        points[i] = SamplePoint(s.position, packNormal(s.smooth_normal), index);
 }

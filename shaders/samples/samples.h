@@ -15,7 +15,7 @@ GPU_CONST uint kGroupLevels = 4u; // levels of the quadtree whose nodes lie with
 struct SamplePoint // a shading point that takes part
 {
     vec3 position; // metres
-    uint normal;   // octahedral shading normal
+    uint normal;   // octahedral; the smooth one, before the normal map
     uint pixel;    // index of the shading point, kNone: background, outside of the picture, or nothing diffuse there
 };
 GPU_SIZE(SamplePoint, 20);
@@ -41,8 +41,8 @@ struct ClusterSums // fixed-point, so that the sum does not depend on the order 
     uvec3 position; // in the scene's cube, units of 1 / ClusterParams.fixed_scale
     uint count;
     uvec3 normal;   // (n + 1) / 2 in the same units
+    uint distance;  // of the points to the centre, in units of 1 / fixed_scale of the scene's longest side
     uint least_eps; // bits of the least eps of its points
-    uint farthest2; // bits of the largest squared distance of its points
     uint nearest;   // index of the point of least eps
 };
 GPU_SIZE(ClusterSums, 40);

@@ -50,29 +50,43 @@ struct Lengths
     uint32_t max_count, count;
 };
 
-const Lengths kLengths[]{{1, 0},       {1, 1},           {2047, 2047},       {2048, 2048},           {2049, 2049},
-                         {4096, 2049}, {10007, 10007},   {10007, 1},         {1 << 20, 4099},        {1 << 20, 0},
-                         {300, 1000},  {524288, 524288}, {524289, 524289},   {(1 << 20) + 3, 1 << 20}, {1048579, 1048579}};
+const Lengths kLengths[]{{1, 0},
+                         {1, 1},
+                         {2047, 2047},
+                         {2048, 2048},
+                         {2049, 2049},
+                         {4096, 2049},
+                         {10007, 10007},
+                         {10007, 1},
+                         {1 << 20, 4099},
+                         {1 << 20, 0},
+                         {300, 1000},
+                         {524288, 524288},
+                         {524289, 524289},
+                         {(1 << 20) + 3, 1 << 20},
+                         {1048579, 1048579}};
 
-class OfLength : public Primitives, public testing::WithParamInterface<Lengths>
+class OfLength : public Primitives, public testing::WithParamInterface<std::tuple<Lengths, Workers>>
 {
 protected:
     // A queue may overflow on the GPU: the count says more than there is room for.
-    static uint32_t used() { return std::min(GetParam().count, GetParam().max_count); }
+    static Lengths lengths() { return std::get<0>(GetParam()); }
+    static Workers workers() { return std::get<1>(GetParam()); }
+    static uint32_t used() { return std::min(lengths().count, lengths().max_count); }
 };
 
-std::string nameOf(const testing::TestParamInfo<Lengths>& info)
+const char* nameOf(Workers workers)
 {
-    return fmt::format("{}Of{}", info.param.count, info.param.max_count);
+    return workers == Workers::kGroups ? "Groups" : "Threads";
 }
 
 TEST_P(OfLength, ScanAddsUpWhatComesBefore)
 {
-    const auto [max_count, count] = GetParam();
+    const auto [max_count, count] = lengths();
     const std::vector<uint32_t> values = randomWords(max_count, 1); // the sums wrap around many times
     const Buffer given = words(values), sums = device().array<uint32_t>("test.sums", max_count),
                  total = device().array<uint32_t>("test.total", 1), size = sizeOf(count);
-    const Scan scan(device(), "test.scan", max_count);
+    const Scan scan(device(), "test.scan", max_count, workers());
     submit(
         [&](Recorder& rec)
         {
@@ -83,16 +97,15 @@ TEST_P(OfLength, ScanAddsUpWhatComesBefore)
     std::vector<uint32_t> expected(max_count, kUntouched);
     std::exclusive_scan(values.begin(), values.begin() + used(), expected.begin(), 0u);
     EXPECT_EQ(device().download<uint32_t>(sums, max_count), expected);
-    EXPECT_EQ(device().download<uint32_t>(total, 1)[0],
-              std::accumulate(values.begin(), values.begin() + used(), 0u));
+    EXPECT_EQ(device().download<uint32_t>(total, 1)[0], std::accumulate(values.begin(), values.begin() + used(), 0u));
 }
 
 TEST_P(OfLength, ScanMayReplaceItsValues)
 {
-    const auto [max_count, count] = GetParam();
+    const auto [max_count, count] = lengths();
     std::vector<uint32_t> expected = randomWords(max_count, 2);
     const Buffer values = words(expected), total = device().array<uint32_t>("test.total", 1), size = sizeOf(count);
-    const Scan scan(device(), "test.scan", max_count);
+    const Scan scan(device(), "test.scan", max_count, workers());
     submit([&](Recorder& rec) { scan.record(rec, values, values, total, size); });
     std::exclusive_scan(expected.begin(), expected.begin() + used(), expected.begin(), 0u);
     EXPECT_EQ(device().download<uint32_t>(values, max_count), expected);
@@ -100,8 +113,8 @@ TEST_P(OfLength, ScanMayReplaceItsValues)
 
 TEST_P(OfLength, CompactionKeepsTheFlaggedInOrder)
 {
-    const auto [max_count, count] = GetParam();
-    const Compaction compaction(device(), "test.compaction", max_count);
+    const auto [max_count, count] = lengths();
+    const Compaction compaction(device(), "test.compaction", max_count, workers());
     for (const uint32_t kept_of_16 : {0u, 1u, 8u, 16u})
     {
         SCOPED_TRACE(kept_of_16);
@@ -132,7 +145,124 @@ TEST_P(OfLength, CompactionKeepsTheFlaggedInOrder)
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(, OfLength, testing::ValuesIn(kLengths), nameOf);
+INSTANTIATE_TEST_SUITE_P(
+    , OfLength, testing::Combine(testing::ValuesIn(kLengths), testing::Values(Workers::kGroups, Workers::kThreads)),
+    [](const auto& of)
+    {
+        const Lengths& lengths = std::get<0>(of.param);
+        return fmt::format("{}Of{}By{}", lengths.count, lengths.max_count, nameOf(std::get<1>(of.param)));
+    });
+
+// ---- Segmented reduction -------------------------------------------------------------------------------------------
+
+using Segments = std::vector<uint32_t>;
+
+class Reduction : public Primitives, public testing::WithParamInterface<Lengths>
+{
+protected:
+    static uint32_t used() { return std::min(GetParam().count, GetParam().max_count); }
+
+    /// Ascending ones: one for all, one each, and some of every length from one to thousands, with gaps.
+    static std::vector<Segments> kinds()
+    {
+        const uint32_t n = GetParam().max_count;
+        Segments one(n, 3), each(n), mixed(n);
+        std::iota(each.begin(), each.end(), 0u);
+        const std::vector<uint32_t> random = randomWords(n, 6);
+        uint32_t segment = 0, mean = 1;
+        for (uint32_t i = 0; i < n; ++i)
+        {
+            if (random[i] % mean == 0)
+            {
+                segment += 1 + random[i] / mean % 3;
+                mean = mean % 4096 * 2 + 1;
+            }
+            mixed[i] = segment;
+        }
+        return {one, each, mixed};
+    }
+
+    template <typename T>
+    static std::vector<T> reduce(const std::vector<T>& values, const Segments& segments, uint32_t segment_count,
+                                 SegmentedReduction::Type type)
+    {
+        const auto [max_count, count] = GetParam();
+        const Buffer given = device().upload<T>("test.values", values), sorted = words(segments),
+                     results = device().array<T>("test.results", segment_count), size = sizeOf(count);
+        const SegmentedReduction reduction(device(), "test.reduction", max_count, type);
+        submit([&](Recorder& rec) { reduction.record(rec, given, sorted, results, size, segment_count); });
+        return device().download<T>(results, segment_count);
+    }
+};
+
+TEST_P(Reduction, AddsUpEverySegment)
+{
+    const std::vector<uint32_t> values = randomWords(GetParam().max_count, 7);
+    for (const Segments& segments : kinds())
+        for (const uint32_t segment_count : {segments.back() + 5, segments.back() / 2 + 1}) // the rest is left out
+        {
+            std::vector<uint32_t> expected(segment_count, 0u);
+            for (uint32_t i = 0; i < used(); ++i)
+                if (segments[i] < segment_count)
+                    expected[segments[i]] += values[i];
+            EXPECT_EQ(reduce(values, segments, segment_count, SegmentedReduction::Type::kUint), expected);
+        }
+}
+
+TEST_P(Reduction, AddsUpFloatsAsUintsWhereSumsAreExact)
+{
+    std::vector<uint32_t> values = randomWords(GetParam().max_count, 8);
+    for (uint32_t& value : values)
+        value %= 16; // sums below 2^24
+    const std::vector<float> floats(values.begin(), values.end());
+    std::vector<gpu::vec4> vectors;
+    for (const float value : floats)
+        vectors.push_back({value, -value, 2 * value, 16 - value});
+    for (const Segments& segments : kinds())
+    {
+        const uint32_t segment_count = segments.back() + 1;
+        const auto sums = reduce(floats, segments, segment_count, SegmentedReduction::Type::kFloat);
+        const auto vector_sums = reduce(vectors, segments, segment_count, SegmentedReduction::Type::kVec4);
+        std::vector<float> expected(segment_count, 0.0f), count_in(segment_count, 0.0f);
+        for (uint32_t i = 0; i < used(); ++i)
+        {
+            expected[segments[i]] += floats[i];
+            ++count_in[segments[i]];
+        }
+        EXPECT_EQ(sums, expected);
+        uint32_t wrong = 0;
+        for (uint32_t s = 0; s < segment_count; ++s)
+            wrong += vector_sums[s].x != expected[s] || vector_sums[s].y != -expected[s] ||
+                     vector_sums[s].z != 2 * expected[s] || vector_sums[s].w != 16 * count_in[s] - expected[s];
+        EXPECT_EQ(wrong, 0u);
+    }
+}
+
+TEST_P(Reduction, AddsUpFloatsInTheSameOrderEveryTime)
+{
+    const std::vector<uint32_t> random = randomWords(GetParam().max_count, 9);
+    std::vector<float> values;
+    for (const uint32_t r : random)
+        values.push_back(std::ldexp(float(r >> 8), -int(r % 32))); // of all sizes: any other order rounds otherwise
+    const Segments segments = kinds().back();
+    const uint32_t segment_count = segments.back() + 1;
+    const auto sums = reduce(values, segments, segment_count, SegmentedReduction::Type::kFloat);
+    EXPECT_EQ(reduce(values, segments, segment_count, SegmentedReduction::Type::kFloat), sums);
+    std::vector<double> expected(segment_count, 0.0);
+    for (uint32_t i = 0; i < used(); ++i)
+        expected[segments[i]] += values[i];
+    // A value takes part in kReduceItems - 1 additions a level, and all are positive.
+    const double levels = 1 + std::ceil(std::log(std::max(GetParam().max_count, 2u)) / std::log(gpu::kReduceItems / 2));
+    for (uint32_t s = 0; s < segment_count; ++s)
+        ASSERT_NEAR(sums[s], expected[s], expected[s] * levels * gpu::kReduceItems * 0x1p-24) << s;
+}
+
+INSTANTIATE_TEST_SUITE_P(, Reduction,
+                         testing::Values(Lengths{1, 0}, Lengths{1, 1}, Lengths{31, 31}, Lengths{32, 32},
+                                         Lengths{33, 33}, Lengths{512, 512}, Lengths{513, 513}, Lengths{300, 1000},
+                                         Lengths{10007, 10007}, Lengths{262147, 40}, Lengths{262147, 262147},
+                                         Lengths{1048579, 1048579}),
+                         [](const auto& of) { return fmt::format("{}Of{}", of.param.count, of.param.max_count); });
 
 // ---- Sort ----------------------------------------------------------------------------------------------------------
 
@@ -154,14 +284,15 @@ const SortCase kSorts[]{{"Nothing", 1000, 0, 1, 32},
                         {"FiveBits", 10007, 10007, 1, 5},
                         {"PrimeOf17Bits", 10007, 10007, 1, 17},
                         {"PrimeOf40Bits", 10007, 10007, 2, 40},
-                        {"PrimeOf63Bits", 65537, 65537, 2, 63},
-                        {"LowWordOnly", 65537, 65537, 2, 30},
-                        {"ManyOf30Bits", (1 << 20) + 3, (1 << 20) + 3, 1, 30},
-                        {"ManyOf32Bits", (1 << 20) + 3, (1 << 20) + 3, 1, 32},
-                        {"ManyOf64Bits", (1 << 18) + 3, (1 << 18) + 3, 2, 64},
+                        {"PrimeOf63Bits", 20011, 20011, 2, 63},
+                        {"LowWordOnly", 20011, 20011, 2, 30},
+                        {"ManyOf32Bits", 200003, 200003, 1, 32},
+                        {"ManyOf64Bits", 65537, 65537, 2, 64},
                         {"HalfOfTheirRoom", 1 << 18, 1 << 17, 1, 32}};
 
-class Sort : public Primitives, public testing::WithParamInterface<std::tuple<SortCase, SortWorkers>>
+const SortCase kMillions[]{{"MillionOf30Bits", (1 << 20) + 3, (1 << 20) + 3, 1, 30}};
+
+class Sort : public Primitives, public testing::WithParamInterface<std::tuple<SortCase, Workers>>
 {
 protected:
     using Keys = std::vector<uint64_t>;
@@ -210,6 +341,16 @@ TEST_P(Sort, OrdersRandomKeys)
     expectSorted(randomKeys());
 }
 
+// Takes long by groups where threads run one after the other: random keys will do.
+class LongSort : public Sort
+{
+};
+
+TEST_P(LongSort, OrdersRandomKeys)
+{
+    expectSorted(randomKeys());
+}
+
 TEST_P(Sort, LeavesEqualKeysInTheirOrder)
 {
     Keys keys = randomKeys();
@@ -230,12 +371,12 @@ TEST_P(Sort, OrdersSortedAndReversedKeys)
     expectSorted(keys);
 }
 
-INSTANTIATE_TEST_SUITE_P(, Sort,
-                         testing::Combine(testing::ValuesIn(kSorts),
-                                          testing::Values(SortWorkers::kGroups, SortWorkers::kThreads)),
-                         [](const auto& sort)
-                         {
-                             return fmt::format("{}By{}", std::get<0>(sort.param).name,
-                                                std::get<1>(sort.param) == SortWorkers::kGroups ? "Groups" : "Threads");
-                         });
+std::string sortName(const testing::TestParamInfo<std::tuple<SortCase, Workers>>& sort)
+{
+    return fmt::format("{}By{}", std::get<0>(sort.param).name, nameOf(std::get<1>(sort.param)));
+}
+
+const auto kBoth = testing::Values(Workers::kGroups, Workers::kThreads);
+INSTANTIATE_TEST_SUITE_P(, Sort, testing::Combine(testing::ValuesIn(kSorts), kBoth), sortName);
+INSTANTIATE_TEST_SUITE_P(, LongSort, testing::Combine(testing::ValuesIn(kMillions), kBoth), sortName);
 } // namespace

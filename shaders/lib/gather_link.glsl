@@ -1,8 +1,7 @@
 // One link of a gathering ray's path: at a surface that scatters it reads the light there; a mirror or glass sends it on.
-// Emitters add nothing: met directly they are direct light, met through mirrors or glass caustics. The kernel defines
-// `vec3 irradianceAt(vec3 x, vec3 n)` before it includes this. Functions only.
-#ifndef GATHER_LINK_GLSL
-#define GATHER_LINK_GLSL
+// The kernel defines `vec3 irradianceAt(vec3 x, vec3 n)` before it includes this. Functions only.
+#ifndef LIB_GATHER_LINK_GLSL
+#define LIB_GATHER_LINK_GLSL
 #include "shaders/gather/gather.h"
 #include "shaders/lib/path.glsl"
 
@@ -14,16 +13,25 @@ struct Link
 };
 
 /// @param state of the path; updated where it goes on
-Link followLink(Ray ray, Hit hit, inout GatherState state, Sampler sampler_)
+/// @param count_emitters whether emitters and sky met through mirrors or glass count. From a glossy lobe they do; from the
+/// diffuse one they are caustics. Met directly they are direct light: they never count.
+Link followLink(Ray ray, Hit hit, inout GatherState state, Sampler sampler_, bool count_emitters)
 {
     Link link = Link(vec3(0.0), false, ray);
+    bool counts = count_emitters && state.specular > 0u;
     if (hit.slot == kNone)
+    {
+        if (counts)
+            link.radiance = state.throughput * environmentRadiance(ray.direction);
         return link;
+    }
     Surface s = surfaceAt(hit.slot, hit.barycentrics, ray.direction);
     SurfaceMaterial m = materialAt(s);
     if ((m.flags & kMaterialUnlit) != 0u)
         return link;
     state.throughput *= mediumTransmittance(crossedMedium(state.medium, s, m), hit.t);
+    if (counts && emits(s))
+        link.radiance = state.throughput * m.emission;
     Bsdf b = bsdfAt(m, s.front);
     mat3 frame = frameAround(s.normal);
     vec3 wo = -ray.direction * frame;
@@ -34,7 +42,7 @@ Link followLink(Ray ray, Hit hit, inout GatherState state, Sampler sampler_)
         vec3 reflectance = diffuseReflectance(b, wo.z) + glossyReflectance(b, wo.z);
         vec3 carried = state.throughput * reflectance * (kInvPi / (b.smooth_specular ? p.diffuse : 1.0));
         if (carried != vec3(0.0))
-            link.radiance = carried * irradianceAt(s.position, s.geometric_normal);
+            link.radiance += carried * irradianceAt(s.position, s.geometric_normal);
         return link;
     }
     BsdfSample next = sampleBsdf(b, wo, choice.x, vec2(0.5));
@@ -44,6 +52,7 @@ Link followLink(Ray ray, Hit hit, inout GatherState state, Sampler sampler_)
     if (next.wi.z < 0.0 && !next.passed)
         state.medium = s.front && enclosesMedium(s, m) ? s.material : kNone;
     state.throughput *= next.weight;
+    state.specular += uint(!next.passed);
     link.goes_on = true;
     link.next = leavingRay(s, wi, kInfinity, ray.path);
     return link;

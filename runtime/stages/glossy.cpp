@@ -1,0 +1,35 @@
+#include "runtime/stages/glossy.h"
+
+GlossyStage::GlossyStage(const Device& device, const SceneGpu& scene, uint32_t max_pixels)
+    : generate_(device.kernel("glossy/generate", scene.constants())), link_(device.kernel("glossy/link", scene.constants())),
+      queue_(device, "glossy.queue", max_pixels), next_queue_(device, "glossy.next_queue", max_pixels),
+      hits_(device.array<gpu::Hit>("glossy.hits", max_pixels)), states_(device.array<gpu::GatherState>("glossy.states", max_pixels))
+{
+}
+
+void GlossyStage::record(Recorder& rec, const RayStage& rays, const CutStage::Output& cut, const Input& in) const
+{
+    gpu::GlossyParams params{.point_count = in.point_count,
+                             .first_sample = in.first_sample,
+                             .seed = in.seed,
+                             .depth = 0,
+                             .depth_limit = in.specular_depth,
+                             .radius = in.radius};
+    rays.reset(rec, queue_.size);
+    rec.run(generate_, in.point_count, params,
+            {{"Points", in.points}, {"Queue", queue_.size}, {"Rays", queue_.rays}, {"States", states_}});
+    rays.close(rec, queue_.size);
+    const RayQueue* queue = &queue_;
+    const RayQueue* next = &next_queue_;
+    for (; params.depth <= params.depth_limit; ++params.depth)
+    {
+        rays.closest(rec, *queue, hits_, traceSeed(in.seed, in.first_sample, ~params.depth));
+        rays.reset(rec, next->size);
+        rec.runIndirect(link_, queue->size, 0, params,
+                        {{"Queue", queue->size}, {"Rays", queue->rays}, {"Hits", hits_}, {"States", states_}, {"NextQueue", next->size},
+                         {"NextRays", next->rays}, {"Radiance", in.radiance}, {"CutSize", cut.size}, {"TreeNodes", cut.tree.nodes()},
+                         {"CutNodes", cut.nodes}});
+        rays.close(rec, next->size);
+        std::swap(queue, next);
+    }
+}

@@ -1,0 +1,50 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "shaders/glossy/glossy.h"
+#include "shaders/lib/path.glsl"
+
+// A ray from every shading point with a rough specular lobe, chosen by that lobe. Faint reflections send a ray now and
+// then only (Russian roulette). One thread per pixel; one ray a pixel at most.
+
+layout(local_size_x = kRaysGroupSize) in;
+layout(push_constant, scalar) uniform Params { GlossyParams params; };
+
+layout(set = 1, binding = 0, scalar) readonly buffer Points { ShadingPoint points[]; };
+layout(set = 1, binding = 1, scalar) buffer Queue { QueueSize queue; };
+layout(set = 1, binding = 2, scalar) writeonly buffer Rays { Ray rays[]; };
+layout(set = 1, binding = 3, scalar) writeonly buffer States { GatherState states[]; };
+
+const float kSureReflectance = 0.2; // from here on every pixel sends its ray
+
+void main()
+{
+    uint path = gl_GlobalInvocationID.x;
+    if (path >= params.point_count || points[path].slot == kNone)
+        return;
+    ShadingPoint point = points[path];
+    Surface s = surfaceAt(point.slot, point.barycentrics, point.direction);
+    Bsdf b = bsdfAt(materialAt(s), s.front);
+    if (b.smooth_specular)
+        return;
+    mat3 frame = frameAround(s.normal);
+    vec3 wo = -point.direction * frame;
+    LobeProbabilities p = lobeProbabilities(b, wo.z);
+    float specular = p.reflection + p.transmission;
+    vec3 reflected = glossyReflectance(b, wo.z) + belowColor(b, wo.z) * b.transmission;
+    float survival = clamp(luminance(reflected * point.throughput) / kSureReflectance, 0.05, 1.0);
+    Sampler sampler_ = vertexSampler(path, point.depth + 1u, params.point_count, params.first_sample, params.seed);
+    sampler_.dimension += kVertexDimensions - 2u; // those before are direct light's
+    vec2 u = nextPair(sampler_), choice = nextPair(sampler_);
+    if (specular == 0.0 || choice.y >= survival)
+        return;
+    BsdfSample next = sampleBsdf(b, wo, p.diffuse + choice.x * specular * 0.999999, u);
+    vec3 wi = frame * next.wi;
+    float chosen = (next.pdf - p.diffuse * max(0.0, next.wi.z) * kInvPi) / specular; // density of the specular lobes alone
+    if (next.pdf == 0.0 || !(chosen > 0.0) || !sidesAgree(s, wi, next.wi.z))
+        return;
+    vec3 weight = (next.weight - next.diffuse_weight) * (next.pdf / chosen);
+    bool entered = next.wi.z < 0.0 && !b.thin;
+    states[path] = GatherState(point.throughput * weight / survival, entered && s.front ? s.material : kNone, 0u);
+    rays[atomicAdd(queue.count, 1u)] = leavingRay(s, wi, kInfinity, path);
+}

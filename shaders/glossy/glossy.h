@@ -1,0 +1,20 @@
+// Indirect light in rough mirrors. Shared by runtime/stages/glossy.cpp and shaders/glossy/*.comp.
+#ifndef SHADERS_GLOSSY_H
+#define SHADERS_GLOSSY_H
+#include "shaders/gather/gather.h"
+
+GPU_NAMESPACE_BEGIN
+
+struct GlossyParams
+{
+    uint point_count;
+    uint first_sample; // index of the pixel's sample
+    uint seed;
+    uint depth;        // delta events before this one
+    uint depth_limit;
+    float radius;      // metres: how far a cut node may be
+};
+GPU_SIZE(GlossyParams, 24);
+
+GPU_NAMESPACE_END
+#endif

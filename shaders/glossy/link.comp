@@ -1,0 +1,46 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "shaders/glossy/glossy.h"
+
+// Reads the illumination cut where glossy rays end. One thread per ray of the queue, one ray a pixel at most.
+
+layout(local_size_x = kRaysGroupSize) in;
+layout(push_constant, scalar) uniform Params { GlossyParams params; };
+
+layout(set = 1, binding = 0, scalar) readonly buffer Queue { QueueSize queue; };
+layout(set = 1, binding = 1, scalar) readonly buffer Rays { Ray rays[]; };
+layout(set = 1, binding = 2, scalar) readonly buffer Hits { Hit hits[]; };
+layout(set = 1, binding = 3, scalar) buffer States { GatherState states[]; };
+layout(set = 1, binding = 4, scalar) buffer NextQueue { QueueSize next_queue; };
+layout(set = 1, binding = 5, scalar) writeonly buffer NextRays { Ray next_rays[]; };
+layout(set = 1, binding = 6, scalar) buffer Radiance { vec3 radiance[]; };
+layout(set = 1, binding = 7, scalar) readonly buffer CutSize { QueueSize cut_size; };
+layout(set = 1, binding = 8, scalar) readonly buffer TreeNodes { TreeNode tree_nodes[]; };
+layout(set = 1, binding = 9, scalar) readonly buffer CutNodes { CutNode cut_nodes[]; };
+#include "shaders/lib/cut.glsl"
+
+vec3 irradianceAt(vec3 x, vec3 n)
+{
+    float support;
+    return cutIrradiance(x, n, params.radius * params.radius, support);
+}
+#include "shaders/lib/gather_link.glsl"
+
+void main()
+{
+    uint i = gl_GlobalInvocationID.x;
+    if (i >= queue.count)
+        return;
+    Ray ray = rays[i];
+    Hit hit = hits[i];
+    GatherState state = states[ray.path];
+    Sampler sampler_ = Sampler(hash(params.seed, ray.path), params.first_sample, params.depth);
+    Link link = followLink(ray, hit, state, sampler_, true);
+    if (link.radiance != vec3(0.0))
+        radiance[ray.path] += link.radiance;
+    if (!link.goes_on || params.depth >= params.depth_limit)
+        return;
+    states[ray.path] = state;
+    next_rays[atomicAdd(next_queue.count, 1u)] = link.next;
+}
