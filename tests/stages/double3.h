@@ -1,0 +1,52 @@
+// Vectors in double precision, for the slow, obvious twins of kernels.
+#pragma once
+#include "format/gpu_types.h"
+
+#include <algorithm>
+#include <cmath>
+
+struct Double3
+{
+    double x = 0, y = 0, z = 0;
+
+    Double3() = default;
+    Double3(double x_, double y_, double z_) : x(x_), y(y_), z(z_) {}
+    Double3(gpu::vec3 v) : x(v.x), y(v.y), z(v.z) {} // NOLINT: every float is a double
+};
+
+inline Double3 operator+(Double3 a, Double3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+inline Double3 operator-(Double3 a, Double3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+inline Double3 operator*(double s, Double3 v) { return {s * v.x, s * v.y, s * v.z}; }
+inline double dot(Double3 a, Double3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+inline double length2(Double3 v) { return dot(v, v); }
+inline double length(Double3 v) { return std::sqrt(dot(v, v)); }
+inline Double3 normalized(Double3 v) { return (1 / length(v)) * v; }
+inline Double3 min(Double3 a, Double3 b) { return {std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)}; }
+inline Double3 max(Double3 a, Double3 b) { return {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)}; }
+inline double largest(Double3 v) { return std::max({v.x, v.y, v.z}); }
+/// Rec. 709 luminance of linear RGB.
+inline double luminanceOf(Double3 rgb) { return 0.2126 * rgb.x + 0.7152 * rgb.y + 0.0722 * rgb.z; }
+
+/// The unit vector that an octahedral encoding of 2 x 16-bit snorm stands for (Cigolle et al. 2014).
+inline Double3 unpackedNormal(uint32_t bits)
+{
+    const auto snorm = [](uint32_t half) { return std::clamp(double(int16_t(half)) / 32767, -1.0, 1.0); };
+    const double x = snorm(bits & 0xffff), y = snorm(bits >> 16), z = 1 - std::abs(x) - std::abs(y);
+    const double fold = std::max(-z, 0.0);
+    return normalized({x + (x >= 0 ? -fold : fold), y + (y >= 0 ? -fold : fold), z});
+}
+
+/// Its inverse.
+inline uint32_t packedNormal(Double3 v)
+{
+    const double sum = std::abs(v.x) + std::abs(v.y) + std::abs(v.z);
+    double x = v.x / sum, y = v.y / sum;
+    if (v.z < 0)
+    {
+        const double folded_x = (1 - std::abs(y)) * (x >= 0 ? 1 : -1);
+        y = (1 - std::abs(x)) * (y >= 0 ? 1 : -1);
+        x = folded_x;
+    }
+    const auto snorm = [](double value) { return uint32_t(uint16_t(int16_t(std::lround(value * 32767)))); };
+    return snorm(x) | snorm(y) << 16;
+}

@@ -1,0 +1,141 @@
+#include "tests/stages/gi_test.h"
+
+#include <numbers>
+
+void GiTest::submit(const SceneGpu& scene, const std::function<void(Recorder&)>& record)
+{
+    Recorder rec(device());
+    rec.begin(scene.descriptorSet());
+    record(rec);
+    rec.submitAndWait();
+}
+
+TreeData GiTest::contents(const Tree& tree, uint32_t count)
+{
+    const uint32_t inner = count > 0 ? count - 1 : 0;
+    return {.nodes = contents<gpu::TreeNode>(tree.nodes(), inner),
+            .order = contents<uint32_t>(tree.order(), count),
+            .leaf_parents = contents<uint32_t>(tree.leafParents(), count),
+            .node_parents = contents<uint32_t>(tree.nodeParents(), inner)};
+}
+
+Buffer GiTest::sizeBuffer(uint32_t count)
+{
+    return upload<gpu::QueueSize>("test.size", {{.groups = {(count + 63) / 64, 1, 1}, .count = count}});
+}
+
+std::unique_ptr<PhotonMap> GiTest::mapOf(const SceneGpu& scene, const std::vector<gpu::Photon>& photons)
+{
+    const uint32_t count = uint32_t(photons.size());
+    auto map = std::make_unique<PhotonMap>(device(), scene, std::max(count, 1u));
+    const Buffer slots = upload("test.photons", photons), flags = upload("test.flags", std::vector<uint32_t>(count, 1));
+    submit(scene, [&](Recorder& rec)
+           { map->gpu.emplace(map->stage.record(rec, map->rays, {.photons = slots, .flags = flags, .slot_count = count})); });
+    EXPECT_EQ(countOf(map->gpu->size), count);
+    map->photons = contents<gpu::Photon>(map->gpu->photons, count);
+    map->tree = contents(map->gpu->tree, count);
+    return map;
+}
+
+std::vector<gpu::Photon> GiTest::emit(const SceneGpu& scene, PhotonKind kind, const PhotonStage::Input& in)
+{
+    const RayStage rays(device(), scene);
+    const PhotonStage stage(device(), scene, kind, in.path_count, in.bounce_limit);
+    submit(scene, [&](Recorder& rec) { (void)stage.record(rec, rays, in); });
+    std::optional<PhotonStage::Output> out;
+    submit(scene, [&](Recorder& rec) { out.emplace(stage.record(rec, rays, in)); }); // again: nothing may be left over
+    const auto slots = contents<gpu::Photon>(out->photons, out->slot_count);
+    const auto flags = contents<uint32_t>(out->flags, out->slot_count);
+    std::vector<gpu::Photon> stored;
+    for (uint32_t i = 0; i < out->slot_count; ++i)
+        if (flags[i] != 0)
+            stored.push_back(slots[i]);
+    return stored;
+}
+
+Picture GiTest::renderGi(const SceneGpu& scene, const Camera& camera, const Settings& settings, uint32_t frame_count, uint32_t width,
+                         uint32_t height, uint32_t seed)
+{
+    Renderer renderer(device(), scene, Mode::kGi, width, height, settings);
+    Recorder rec(device());
+    for (uint32_t frame = 0; frame < frame_count; ++frame)
+    {
+        rec.begin(scene.descriptorSet());
+        renderer.record(rec, camera, settings, seed);
+        rec.submitAndWait();
+    }
+    EXPECT_EQ(renderer.sampleCount(), frame_count);
+    EXPECT_EQ(renderer.nonFiniteCount(device()), 0u);
+    return {.width = width, .height = height, .pixels = renderer.picture(device())};
+}
+
+double GiTest::diagonalOf(const SceneGpu& scene)
+{
+    return length(Double3(scene.info().bounds_max) - Double3(scene.info().bounds_min));
+}
+
+namespace
+{
+struct Near
+{
+    double distance2;
+    Double3 power;
+};
+
+Double3 estimateWithin(const std::vector<Near>& near, double radius2)
+{
+    Double3 sum;
+    for (const Near& photon : near)
+        if (photon.distance2 < radius2)
+            sum = sum + std::pow(1 - photon.distance2 / radius2, 2) * photon.power;
+    return 3 / (std::numbers::pi * radius2) * sum;
+}
+} // namespace
+
+DensityBounds densityBounds(std::span<const gpu::Photon> photons, Double3 x, Double3 n, uint32_t wanted, double radius)
+{
+    std::vector<Near> near;
+    for (const gpu::Photon& photon : photons)
+    {
+        const double distance2 = length2(Double3(photon.position) - x);
+        if (distance2 < radius * radius && dot(n, unpackedNormal(photon.direction)) < 0 && dot(n, unpackedNormal(photon.normal)) > 0.1)
+            near.push_back({distance2, photon.power});
+    }
+    constexpr size_t kLeastPhotons = 8;
+    if (near.size() < kLeastPhotons)
+        return {.least = {}, .most = {}, .exact = 0};
+    std::ranges::sort(near, {}, &Near::distance2);
+    const double whole = radius * radius;
+    const auto distance2 = [&](size_t i) { return i < near.size() ? near[i].distance2 : whole; };
+    // Three histograms of 32 bins, each over one bin of the one before; none more once the bin's rim holds k + k/16.
+    const double low = near.size() < wanted ? whole : distance2(wanted - 1);
+    const double high = std::max(std::min(low + whole / 32768, whole), distance2(wanted + wanted / 16));
+    const Double3 exact = estimateWithin(near, low);
+    DensityBounds bounds{.least = exact, .most = exact, .exact = luminanceOf(exact)};
+    constexpr int kSteps = 64;
+    for (int step = 1; step <= kSteps; ++step)
+    {
+        const Double3 value = estimateWithin(near, low + (high - low) * step / kSteps);
+        bounds.least = min(bounds.least, value);
+        bounds.most = max(bounds.most, value);
+    }
+    return bounds;
+}
+
+nlohmann::json mirror(double r, double g, double b)
+{
+    return {{"pbrMetallicRoughness", {{"baseColorFactor", {r, g, b, 1}}, {"metallicFactor", 1}, {"roughnessFactor", 0}}}};
+}
+
+Settings smallSettings()
+{
+    Settings settings;
+    settings.photon_count = 2000;
+    settings.photon_bounces = 4;
+    settings.density_photons = 50;
+    settings.sample_count = 128;
+    settings.gather_rays = 32;
+    settings.caustic_photons = 1000;
+    settings.caustic_density_photons = 50;
+    return settings;
+}

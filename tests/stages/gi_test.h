@@ -1,0 +1,81 @@
+// Stages of global illumination on their own: what they need on the GPU, and what they made of it back here.
+#pragma once
+#include "runtime/stages/cut.h"
+#include "tests/stages/double3.h"
+#include "tests/stages/gpu_test.h"
+#include "tests/stages/scene_builder.h"
+
+#include <functional>
+#include <optional>
+#include <span>
+
+/// A tree as it lies on the GPU.
+struct TreeData
+{
+    std::vector<gpu::TreeNode> nodes;                                // [count - 1]
+    std::vector<uint32_t> order, leaf_parents, node_parents;         // [count], [count], [count - 1]
+};
+
+/// A photon map: the stage that made it, and its contents.
+struct PhotonMap
+{
+    PhotonMap(const Device& device, const SceneGpu& scene, uint32_t max_slots) : rays(device, scene), stage(device, "test.map", max_slots) {}
+
+    RayStage rays;
+    PhotonTreeStage stage;
+    std::optional<PhotonTreeStage::Output> gpu;
+    std::vector<gpu::Photon> photons; // sorted as the tree
+    TreeData tree;
+};
+
+/// What density estimation may give: the kernel finds the distance of the k-th photon by a histogram, to one of its bins.
+struct DensityBounds
+{
+    Double3 least, most; // W/m^2
+    double exact;        // luminance of the estimate over the exact distance of the k-th photon
+};
+
+class GiTest : public GpuTest
+{
+protected:
+    /// Runs what `record` records, and waits.
+    static void submit(const SceneGpu& scene, const std::function<void(Recorder&)>& record);
+
+    /// The first `count` elements of a buffer, which may be none.
+    template <typename T>
+    static std::vector<T> contents(const Buffer& buffer, uint32_t count)
+    {
+        return count > 0 ? device().download<T>(buffer, count) : std::vector<T>();
+    }
+    static TreeData contents(const Tree& tree, uint32_t count);
+    static uint32_t countOf(const Buffer& size) { return device().download<gpu::QueueSize>(size, 1)[0].count; }
+    /// A count, ready for dispatch.
+    static Buffer sizeBuffer(uint32_t count);
+    template <typename T>
+    static Buffer upload(std::string_view name, std::vector<T> data)
+    {
+        if (data.empty())
+            data.resize(1);
+        return device().upload<T>(name, std::span<const T>(data));
+    }
+
+    /// The map of exactly these photons.
+    static std::unique_ptr<PhotonMap> mapOf(const SceneGpu& scene, const std::vector<gpu::Photon>& photons);
+    /// The photons that a global or caustic emission stores.
+    static std::vector<gpu::Photon> emit(const SceneGpu& scene, PhotonKind kind, const PhotonStage::Input& in);
+
+    /// Renders with exactly `settings`, and expects every sample to be finite.
+    Picture renderGi(const SceneGpu& scene, const Camera& camera, const Settings& settings, uint32_t frame_count, uint32_t width,
+                     uint32_t height, uint32_t seed = 0);
+
+    static double diagonalOf(const SceneGpu& scene);
+};
+
+/// Density estimation by brute force over all photons.
+/// @param wanted k, @param radius metres at most
+DensityBounds densityBounds(std::span<const gpu::Photon> photons, Double3 x, Double3 n, uint32_t wanted, double radius);
+
+/// A material of smooth metal.
+nlohmann::json mirror(double r, double g, double b);
+/// Few photons, samples and rays, for small pictures.
+Settings smallSettings();

@@ -1,0 +1,24 @@
+// The shading points of a small picture, on the GPU as the primary stage leaves them, and here in double precision.
+#pragma once
+#include "runtime/camera.h"
+#include "runtime/stages/primary.h"
+#include "tests/stages/gi_test.h"
+
+struct ShadingPoints
+{
+    /// What `camera` sees. @param path the scene's package
+    ShadingPoints(const Device& device, const SceneGpu& scene, const std::filesystem::path& path, const Camera& camera, uint32_t width,
+                  uint32_t height);
+
+    struct Point
+    {
+        bool exists; // not the background
+        Double3 position, normal; // shading normal
+        Double3 diffuse;          // base colour of what is not metal
+        Double3 throughput;
+    };
+    uint32_t width, height;
+    PrimaryStage stage;
+    std::optional<PrimaryStage::Output> gpu;
+    std::vector<Point> points; // [width * height]
+};
