@@ -33,6 +33,20 @@ struct GlobalIllumination::Frame
     bool shows(uint32_t term) const { return settings.term == gpu::kTermAll || settings.term == term; }
 };
 
+Status GlobalIllumination::checkCounts(uint64_t range, const Settings& settings)
+{
+    const auto tooLarge = [&](const char* names, uint64_t most) -> Status
+    { return Error{ExitCode::kDevice, fmt::format("{} is more than this device's buffers hold, {}; lower one of them", names, most)}; };
+    const uint64_t most_photons = range / (2 * sizeof(gpu::CutNode)), most_rays = range / sizeof(gpu::Ray);
+    if (uint64_t(settings.photon_count) * settings.photon_bounces > most_photons)
+        return tooLarge("photons.count x photons.bounces", most_photons);
+    if (uint64_t(settings.caustic_photons) * kCausticBounces > most_photons)
+        return tooLarge("caustics.photons", most_photons / kCausticBounces);
+    if (uint64_t(settings.sample_count) * settings.gather_rays > most_rays)
+        return tooLarge("samples.count x gather.rays", most_rays);
+    return Success{};
+}
+
 GlobalIllumination::GlobalIllumination(const Device& device, const SceneGpu& scene, const Settings& settings, uint32_t width,
                                        uint32_t height)
     : width_(width), height_(height), diagonal_(0), longest_side_(0), has_specular_(scene.hasFeature(gpu::kFeatureSpecular)),

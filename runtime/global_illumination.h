@@ -12,6 +12,9 @@
 class GlobalIllumination
 {
 public:
+    /// @return kDevice naming the settings whose product needs a larger buffer than `range` bytes
+    static Status checkCounts(uint64_t range, const Settings& settings);
+
     /// Allocates for pictures of width x height pixels and for the counts in `settings`; later settings may ask for fewer
     /// photons, samples and rays, not for more.
     GlobalIllumination(const Device& device, const SceneGpu& scene, const Settings& settings, uint32_t width, uint32_t height);

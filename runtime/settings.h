@@ -33,6 +33,9 @@ struct Settings
     uint32_t tonemap = 2; // Tonemap
 };
 
+/// Settings of a preset: preview (for CPUs and slow GPUs), default, high. @return kUsage listing the presets
+Result<Settings> presetSettings(std::string_view name);
+
 struct Knob
 {
     std::string_view name;
@@ -44,6 +47,9 @@ struct Knob
 };
 
 std::span<const Knob> knobs();
+
+/// A preset with assignments applied in order. @return kUsage naming the valid names or the range
+Result<Settings> makeSettings(std::string_view preset, std::span<const std::string> assignments);
 
 /// Applies "name=value". @return kUsage naming the valid names or the range
 Status applySetting(Settings& settings, const std::string& assignment);

@@ -18,6 +18,8 @@ void showFacts(const PanelFacts& facts)
 void chooseMode(Mode& mode)
 {
     int index = int(mode);
+    ImGui::RadioButton("gi", &index, int(Mode::kGi));
+    ImGui::SameLine();
     ImGui::RadioButton("direct", &index, int(Mode::kDirect));
     ImGui::SameLine();
     ImGui::RadioButton("reference", &index, int(Mode::kReference));
