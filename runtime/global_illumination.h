@@ -24,6 +24,7 @@ public:
 
 private:
     struct Frame;
+    uint32_t chainDepth(const Settings& settings) const;
     void recordDirect(const Frame& frame) const;
     PhotonTreeStage::Output recordPhotons(const Frame& frame) const;
     CutStage::Output recordCut(const Frame& frame, const PhotonTreeStage::Output& map) const;
@@ -33,7 +34,7 @@ private:
 
     uint32_t width_, height_;
     float diagonal_, longest_side_; // of the scene, metres
-    bool has_specular_;
+    bool has_specular_, has_caustic_targets_;
     PrimaryStage primary_;
     DirectStage direct_;
     PhotonStage photons_, caustic_photons_;
