@@ -292,18 +292,17 @@ TEST_F(Cuts, RefineWhereEstimatesDisagreeAndNowhereElse)
     for (uint32_t id = 0; id + 1 < map->photons.size(); ++id)
         parents[nodes[id].left] = parents[nodes[id].right] = id;
     CutStage::Input in = kRefined;
-    in.iterations = 40;    // no node is left over
-    in.difference = 0.05f; // with the default hardly any is divided
-    const auto isSmall = [&](uint32_t id)
-    { return nodes[id].count() < std::max(2 * gpu::kCutFewest, in.photon_count / 4); };
+    in.iterations = 40; // no node is left over
+    const auto isSmall = [&](uint32_t id) { return nodes[id].count() < 2 * gpu::kCutFewest; };
     // Whether the node's estimate may agree with E~, and whether it must, given what the histogram leaves open.
     const auto agreement = [&](uint32_t id) -> std::pair<bool, bool>
     {
         const Node& node = nodes[id];
         const DensityBounds bounds = densityBounds(map->photons, node.center, node.normal, in.photon_count, in.radius);
-        const double difference = in.difference + 1 / std::sqrt(double(node.count()));
-        const auto agrees = [&](double e, double slack)
-        { return node.flat_ && std::abs(e - node.irradiance) <= (difference + slack) * std::max(e, node.irradiance); };
+        const auto agrees = [&](double e, double slack) {
+            return node.flat_ &&
+                   std::abs(e - node.irradiance) <= (in.difference + slack) * std::max(e, node.irradiance);
+        };
         const double least = luminanceOf(bounds.least), most = luminanceOf(bounds.most);
         constexpr double kSlack = 0.003; // rounding of the estimate, and photons at the rim of the normal test
         const bool may = agrees(least, kSlack) || agrees(most, kSlack) ||
@@ -390,7 +389,7 @@ TEST_F(Cuts, GoToTheFinestNodesWhereNoDifferenceIsLetPass)
     const auto map = roomMap(2000);
     const std::vector<Node> nodes = nodesOf(*map);
     CutStage::Input in = kRefined;
-    in.difference = -1; // not even 0, which chance widens
+    in.difference = 0;
     in.iterations = 40;
     const auto ids = idsOf(cutOf(*map, in), nodes);
     for (const uint32_t id : ids)
