@@ -38,10 +38,24 @@ struct GlobalIllumination::Frame
     }
 };
 
+Status GlobalIllumination::checkCounts(uint64_t range, const Settings& settings)
+{
+    const auto tooLarge = [&](const char* names, uint64_t most) -> Status
+    { return Error{ExitCode::kDevice, fmt::format("{} is more than this device's buffers hold, {}; lower one of them", names, most)}; };
+    const uint64_t most_photons = range / (2 * sizeof(gpu::CutNode)), most_rays = range / sizeof(gpu::Ray);
+    if (uint64_t(settings.photon_count) * settings.photon_bounces > most_photons)
+        return tooLarge("photons.count x photons.bounces", most_photons);
+    if (uint64_t(settings.caustic_photons) * kCausticBounces > most_photons)
+        return tooLarge("caustics.photons", most_photons / kCausticBounces);
+    if (uint64_t(settings.sample_count) * settings.gather_rays > most_rays)
+        return tooLarge("samples.count x gather.rays", most_rays);
+    return Success{};
+}
+
 GlobalIllumination::GlobalIllumination(const Device& device, const SceneGpu& scene, const Settings& settings, uint32_t width,
                                        uint32_t height)
     : width_(width), height_(height), diagonal_(0), longest_side_(0), has_specular_(scene.hasFeature(gpu::kFeatureSpecular)),
-      primary_(device, scene, width * height), direct_(device, scene, width * height),
+      has_caustic_targets_(scene.info().caustic_target_count > 0), primary_(device, scene, width * height), direct_(device, scene, width * height),
       photons_(device, scene, PhotonKind::kGlobal, settings.photon_count, settings.photon_bounces),
       caustic_photons_(device, scene, PhotonKind::kCaustic, settings.caustic_photons, kCausticBounces),
       photon_tree_(device, "photon_tree", settings.photon_count * settings.photon_bounces),
@@ -90,6 +104,13 @@ const Buffer& GlobalIllumination::record(Recorder& rec, const RayStage& rays, co
     return frame.radiance;
 }
 
+/// Delta events that photons and gathering rays follow: each costs passes over mostly empty queues. Without mirrors and
+/// glass there are only faint smooth layers over something diffuse, whose second reflections do not matter.
+uint32_t GlobalIllumination::chainDepth(const Settings& settings) const
+{
+    return has_caustic_targets_ ? settings.specular_depth : std::min(settings.specular_depth, 1u);
+}
+
 void GlobalIllumination::recordDirect(const Frame& frame) const
 {
     direct_.record(frame.rec, frame.rays,
@@ -110,7 +131,7 @@ PhotonTreeStage::Output GlobalIllumination::recordPhotons(const Frame& frame) co
         return photons_.record(frame.rec, frame.rays,
                                {.path_count = settings.photon_count,
                                 .bounce_limit = settings.photon_bounces,
-                                .specular_depth = settings.specular_depth,
+                                .specular_depth = chainDepth(settings),
                                 .first_path = frame.index * settings.photon_count,
                                 .seed = frame.camera.seed});
     }();
@@ -151,7 +172,7 @@ void GlobalIllumination::recordIndirect(const Frame& frame, const PhotonTreeStag
         gather_.record(frame.rec, frame.rays, samples, map, cut,
                        {.mode = CutMode(settings.cut_mode),
                         .ray_count = settings.gather_rays,
-                        .specular_depth = settings.specular_depth,
+                        .specular_depth = chainDepth(settings),
                         .photon_count = settings.density_photons,
                         .radius = radius,
                         .seed = frame.seed});
@@ -174,7 +195,7 @@ void GlobalIllumination::recordGlossy(const Frame& frame, const CutStage::Output
                     .radiance = frame.radiance,
                     .point_count = frame.pixel_count,
                     .first_sample = frame.index,
-                    .specular_depth = frame.settings.specular_depth,
+                    .specular_depth = chainDepth(frame.settings),
                     .seed = frame.camera.seed});
 }
 
@@ -185,7 +206,7 @@ void GlobalIllumination::recordCaustics(const Frame& frame) const
     const auto stored = caustic_photons_.record(frame.rec, frame.rays,
                                                 {.path_count = settings.caustic_photons,
                                                  .bounce_limit = kCausticBounces,
-                                                 .specular_depth = settings.specular_depth,
+                                                 .specular_depth = chainDepth(settings),
                                                  .first_path = frame.index * settings.caustic_photons,
                                                  .seed = frame.camera.seed + gpu::kTermCaustics});
     const auto map = caustic_tree_.record(frame.rec, frame.rays, stored);

@@ -13,6 +13,9 @@
 class GlobalIllumination
 {
 public:
+    /// @return kDevice naming the settings whose product needs a larger buffer than `range` bytes
+    static Status checkCounts(uint64_t range, const Settings& settings);
+
     /// Allocates for pictures of width x height pixels and for the counts in `settings`; later settings may ask for fewer
     /// photons, samples and rays, not for more.
     GlobalIllumination(const Device& device, const SceneGpu& scene, const Settings& settings, uint32_t width, uint32_t height);
@@ -26,6 +29,7 @@ public:
 
 private:
     struct Frame;
+    uint32_t chainDepth(const Settings& settings) const;
     void recordDirect(const Frame& frame) const;
     PhotonTreeStage::Output recordPhotons(const Frame& frame) const;
     CutStage::Output recordCut(const Frame& frame, const PhotonTreeStage::Output& map) const;
@@ -36,7 +40,7 @@ private:
 
     uint32_t width_, height_;
     float diagonal_, longest_side_; // of the scene, metres
-    bool has_specular_;
+    bool has_specular_, has_caustic_targets_;
     PrimaryStage primary_;
     DirectStage direct_;
     PhotonStage photons_, caustic_photons_;

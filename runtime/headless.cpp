@@ -17,7 +17,7 @@ void renderSamples(const PlayerOptions& options, Renderer& renderer, const Opene
         rec.begin(opened.scene->descriptorSet());
         {
             const auto scope = rec.scope("frame");
-            renderer.record(rec, opened.camera, options.settings, options.seed, count);
+            renderer.record(rec, opened.camera, opened.settings, options.seed, count);
         }
         if (statistics.frames.empty())
             statistics.first_submit_ms = statistics.elapsedMs();
@@ -33,10 +33,10 @@ Status playHeadless(const PlayerOptions& options)
     const auto opened = openScene(options, {}, statistics);
     if (!opened)
         return opened.error();
-    if (const Status status = Renderer::checkSize(*opened->device, options.width, options.height); !status)
+    if (const Status status = Renderer::checkSize(*opened->device, options.width, options.height, options.mode, opened->settings); !status)
         return status;
-    Renderer renderer(*opened->device, *opened->scene, options.mode, options.width, options.height, options.settings);
+    Renderer renderer(*opened->device, *opened->scene, options.mode, options.width, options.height, opened->settings);
     statistics.pipeline_ms = opened->device->pipelineMs();
     renderSamples(options, renderer, *opened, statistics);
-    return writeResults(options, *opened, renderer, statistics);
+    return writeResults(options, *opened, renderer, opened->settings, statistics);
 }

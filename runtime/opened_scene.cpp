@@ -25,14 +25,20 @@ Result<OpenedScene> openScene(const PlayerOptions& options, std::span<const char
     auto scene = SceneGpu::create(**device, *package);
     if (!scene)
         return scene.error();
+    const std::string preset = !options.preset.empty() ? options.preset : (*device)->isCpu() ? "preview" : "default";
+    const auto settings = makeSettings(preset, options.assignments);
+    if (!settings)
+        return settings.error();
     return OpenedScene{.instance = *instance,
                        .device = std::move(*device),
                        .scene = std::move(*scene),
                        .cameras = packageCameras(*package),
-                       .camera = *camera};
+                       .camera = *camera,
+                       .settings = *settings};
 }
 
-Status writeResults(const PlayerOptions& options, const OpenedScene& opened, Renderer& renderer, Statistics& statistics)
+Status writeResults(const PlayerOptions& options, const OpenedScene& opened, Renderer& renderer, const Settings& settings,
+                    Statistics& statistics)
 {
     statistics.device = opened.device->name();
     statistics.device_bytes = opened.device->allocatedBytes();
@@ -40,7 +46,7 @@ Status writeResults(const PlayerOptions& options, const OpenedScene& opened, Ren
     statistics.non_finite_samples = renderer.nonFiniteCount(*opened.device);
     fmt::print(stderr, "{}\n", statistics.summary());
     if (!options.output.empty())
-        if (const Status status = capture(options.output, renderer, *opened.device, *opened.scene, options.settings); !status)
+        if (const Status status = capture(options.output, renderer, *opened.device, *opened.scene, settings); !status)
             return status.error().about(options.output.string());
     if (!options.stats.empty())
         if (const Status status = statistics.writeJson(options.stats); !status)

@@ -11,6 +11,7 @@ struct OpenedScene
     std::unique_ptr<SceneGpu> scene;
     std::vector<Camera> cameras; // the package's, at least one
     Camera camera;               // the one asked for
+    Settings settings;           // of the preset and --set
 };
 
 /// Opens package, device and camera as `options` say.
@@ -19,4 +20,5 @@ Result<OpenedScene> openScene(const PlayerOptions& options, std::span<const char
                               Statistics& statistics);
 
 /// Prints the summary on stderr, and writes --output and --stats where they are asked for.
-Status writeResults(const PlayerOptions& options, const OpenedScene& opened, Renderer& renderer, Statistics& statistics);
+Status writeResults(const PlayerOptions& options, const OpenedScene& opened, Renderer& renderer, const Settings& settings,
+                    Statistics& statistics);

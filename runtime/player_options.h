@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 struct PlayerOptions
 {
@@ -15,11 +16,12 @@ struct PlayerOptions
     uint32_t frame_count = 0; // 0: --spp decides; without either, 1 headless and no end in a window
     uint32_t sample_count = 0; // samples a pixel, 0: one a frame
     std::filesystem::path output; // .exr or .png; empty: none
-    Mode mode = Mode::kDirect;
+    Mode mode = Mode::kGi;
     std::string camera; // name or index; empty: the first
     uint32_t seed = 0;
     std::string device;
     std::filesystem::path stats; // .json; empty: none
     bool validation = false;
-    Settings settings;
+    std::string preset; // empty: preview on a CPU device, else default
+    std::vector<std::string> assignments; // of settings, "name=value", valid
 };

@@ -21,11 +21,12 @@ bool sameView(const gpu::CameraParams& a, const gpu::CameraParams& b)
 }
 } // namespace
 
-Status Renderer::checkSize(const Device& device, uint32_t width, uint32_t height)
+Status Renderer::checkSize(const Device& device, uint32_t width, uint32_t height, Mode mode, const Settings& settings)
 {
-    const uint64_t most = device.limits().maxStorageBufferRange / kLargestPixelBytes;
+    const uint64_t range = device.limits().maxStorageBufferRange;
+    const uint64_t most = range / kLargestPixelBytes;
     if (uint64_t(width) * height <= most)
-        return Success{};
+        return mode == Mode::kGi ? GlobalIllumination::checkCounts(range, settings) : Success{};
     return Error{ExitCode::kDevice, fmt::format("a picture of {}x{} is too large for {}, which takes {:.1f} million pixels", width, height,
                                                 device.name(), double(most) * 1e-6)};
 }

@@ -21,8 +21,10 @@ enum class Mode
 class Renderer
 {
 public:
-    /// @return kDevice where a picture of that size needs larger buffers than the device has
-    static Status checkSize(const Device& device, uint32_t width, uint32_t height);
+    /// @return kDevice where a picture of that size, or in Mode::kGi the counts in `settings`, need larger buffers than the
+    /// device has
+    static Status checkSize(const Device& device, uint32_t width, uint32_t height, Mode mode = Mode::kReference,
+                            const Settings& settings = {});
 
     /// Allocates for pictures of `width` x `height` pixels; make another Renderer for another size,
     /// which checkSize() has let pass.

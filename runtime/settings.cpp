@@ -77,6 +77,45 @@ std::string rangeOf(const Knob& knob)
 
 std::span<const Knob> knobs() { return kKnobs; }
 
+Result<Settings> presetSettings(std::string_view name)
+{
+    Settings settings;
+    if (name == "preview")
+    {
+        settings.photon_count = 4000;
+        settings.photon_bounces = 6;
+        settings.density_photons = 16;
+        settings.cut_iterations = 1;
+        settings.sample_count = 384;
+        settings.sample_iterations = 1;
+        settings.gather_rays = 32;
+        settings.caustic_photons = 4000;
+        settings.caustic_density_photons = 24;
+        settings.caustic_radius = 0.02f;
+    }
+    else if (name == "high")
+    {
+        settings.direct_samples = 4;
+        settings.photon_count = 400000;
+        settings.sample_count = 16384;
+        settings.gather_rays = 512;
+        settings.caustic_photons = 400000;
+    }
+    else if (name != "default")
+        return Error{ExitCode::kUsage, fmt::format("--preset {}: the presets are preview, default and high", name)};
+    return settings;
+}
+
+Result<Settings> makeSettings(std::string_view preset, std::span<const std::string> assignments)
+{
+    Result<Settings> settings = presetSettings(preset);
+    for (const std::string& assignment : assignments)
+        if (settings)
+            if (const Status status = applySetting(*settings, assignment); !status)
+                return status.error();
+    return settings;
+}
+
 Status applySetting(Settings& settings, const std::string& assignment)
 {
     const size_t equals = assignment.find('=');

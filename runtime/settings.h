@@ -13,7 +13,7 @@ struct Settings
     uint32_t specular_depth = 8;
     uint32_t direct_samples = 1;
     uint32_t photon_count = 100000; // paths
-    uint32_t photon_bounces = 16;
+    uint32_t photon_bounces = 12;
     uint32_t density_photons = 25;
     float density_radius = 0.03f; // of the scene's diagonal
     uint32_t cut_mode = 3; // CutMode
@@ -34,6 +34,9 @@ struct Settings
     uint32_t tonemap = 2; // Tonemap
 };
 
+/// Settings of a preset: preview (for CPUs and slow GPUs), default, high. @return kUsage listing the presets
+Result<Settings> presetSettings(std::string_view name);
+
 struct Knob
 {
     std::string_view name;
@@ -45,6 +48,9 @@ struct Knob
 };
 
 std::span<const Knob> knobs();
+
+/// A preset with assignments applied in order. @return kUsage naming the valid names or the range
+Result<Settings> makeSettings(std::string_view preset, std::span<const std::string> assignments);
 
 /// Applies "name=value". @return kUsage naming the valid names or the range
 Status applySetting(Settings& settings, const std::string& assignment);

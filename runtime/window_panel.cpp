@@ -18,6 +18,8 @@ void showFacts(const PanelFacts& facts)
 void chooseMode(Mode& mode)
 {
     int index = int(mode);
+    ImGui::RadioButton("gi", &index, int(Mode::kGi));
+    ImGui::SameLine();
     ImGui::RadioButton("direct", &index, int(Mode::kDirect));
     ImGui::SameLine();
     ImGui::RadioButton("reference", &index, int(Mode::kReference));
@@ -74,7 +76,7 @@ bool editKnobs(Settings& settings)
     for (const Knob& knob : knobs())
     {
         const bool changed = std::visit([&](auto member) { return editKnob(knob, settings.*member); }, knob.member);
-        restart |= changed && !isDisplayKnob(knob);
+        restart |= changed && (!isDisplayKnob(knob) || settings.view != gpu::kViewNone); // views hold what is behind them
         if (ImGui::IsItemHovered())
             ImGui::SetTooltip("%s", std::string(knob.help).c_str());
     }

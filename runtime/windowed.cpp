@@ -27,7 +27,7 @@ class WindowedPlayer
 {
 public:
     WindowedPlayer(const PlayerOptions& options, Window& window, const OpenedScene& opened, Swapchain& swapchain)
-        : options_(options), window_(window), opened_(opened), swapchain_(swapchain), rec_(*opened.device),
+        : options_(options), settings_(opened.settings), window_(window), opened_(opened), swapchain_(swapchain), rec_(*opened.device),
           overlay_(window, opened.instance, *opened.device, swapchain, rec_), fly_(opened.camera, sceneSize(*opened.scene))
     {
     }
@@ -43,7 +43,8 @@ private:
     bool finished(uint32_t frames) const;
     Status makeRenderer();
 
-    PlayerOptions options_; // settings and mode change under the person's hands
+    PlayerOptions options_; // its mode changes under the person's hands, and so do the settings
+    Settings settings_;
     Window& window_;
     const OpenedScene& opened_;
     Swapchain& swapchain_;
@@ -62,9 +63,9 @@ Status WindowedPlayer::makeRenderer()
 {
     renderer_.reset(); // its memory first
     const VkExtent2D extent = swapchain_.extent();
-    if (const Status status = Renderer::checkSize(*opened_.device, extent.width, extent.height); !status)
+    if (const Status status = Renderer::checkSize(*opened_.device, extent.width, extent.height, options_.mode, settings_); !status)
         return status;
-    renderer_.emplace(*opened_.device, *opened_.scene, options_.mode, extent.width, extent.height);
+    renderer_.emplace(*opened_.device, *opened_.scene, options_.mode, extent.width, extent.height, settings_);
     return Success{};
 }
 
@@ -89,7 +90,7 @@ void WindowedPlayer::saveScreenshot()
         ++number;
     notice_ = fmt::format("wrote {} and .exr", path(".png").string());
     for (const char* extension : {".png", ".exr"})
-        if (const Status status = capture(path(extension), *renderer_, *opened_.device, *opened_.scene, options_.settings); !status)
+        if (const Status status = capture(path(extension), *renderer_, *opened_.device, *opened_.scene, settings_); !status)
             notice_ = status.error().message;
     fmt::print(stderr, "{}\n", notice_);
 }
@@ -116,6 +117,7 @@ void WindowedPlayer::usePanel()
     if (!panel_)
         return;
     const Mode mode = options_.mode;
+    const Settings settings = settings_;
     const std::string device = opened_.device->name();
     const PanelActions actions = drawPanel({.device = device,
                                             .width = renderer_->width(),
@@ -126,13 +128,21 @@ void WindowedPlayer::usePanel()
                                             .cameras = opened_.cameras,
                                             .speed = fly_.speed(),
                                             .notice = notice_},
-                                           options_.settings, options_.mode);
+                                           settings_, options_.mode);
     if (actions.camera)
         fly_.jump(opened_.cameras[*actions.camera]);
-    if (options_.mode != mode)
-        check(bool(makeRenderer()), "the picture's size has not changed");
-    else if (actions.restart)
+    const bool counts_changed = actions.restart && options_.mode == Mode::kGi; // they decide how much is allocated
+    if (options_.mode == mode && !counts_changed && actions.restart)
         renderer_->restart();
+    if (options_.mode == mode && !counts_changed)
+        return;
+    if (const Status status = makeRenderer(); !status)
+    {
+        notice_ = status.error().message;
+        settings_ = settings;
+        options_.mode = mode;
+        check(bool(makeRenderer()), "what was there a moment ago fits no longer");
+    }
 }
 
 /// Renders and shows one frame; an image is acquired.
@@ -141,8 +151,8 @@ void WindowedPlayer::showFrame(Statistics& statistics)
     rec_.begin(opened_.scene->descriptorSet());
     {
         const auto scope = rec_.scope("frame");
-        renderer_->record(rec_, fly_.camera(), options_.settings, options_.seed, renderer_->maxBatch());
-        const Buffer& pixels = renderer_->display(rec_, options_.settings, swapchain_.bgra());
+        renderer_->record(rec_, fly_.camera(), settings_, options_.seed, renderer_->maxBatch());
+        const Buffer& pixels = renderer_->display(rec_, settings_, swapchain_.bgra());
         const auto shown = rec_.scope("show");
         swapchain_.beginOverlay(rec_.commands(), pixels);
         overlay_.draw(rec_.commands());
@@ -194,7 +204,7 @@ Status WindowedPlayer::play(Statistics& statistics)
     }
     if (!renderer_) // closed before anything could be seen
         return Success{};
-    return writeResults(options_, opened_, *renderer_, statistics);
+    return writeResults(options_, opened_, *renderer_, settings_, statistics);
 }
 } // namespace
 

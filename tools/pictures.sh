@@ -7,18 +7,19 @@
 #     --frames N           of the final picture and of the terms; default 32
 #     --spp N              samples a pixel of the reference; default 512
 #     --device NAME        as lumicut-play takes it
+#     --preset NAME        of mode gi; default default
 #     --set NAME=VALUE     a setting of mode gi; repeatable
 #     --only NAME,...      these pictures alone
 # Packages are kept in build/pictures. LUMICUT_BIN=FOLDER uses the programs there instead of building.
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/bench/scenes.sh"
 
-scene=atrium size=480x270 frames=32 spp=512 only= pictures=$root/tools/pictures out=$root/build/pictures
+scene=atrium size=480x270 frames=32 spp=512 preset=default only= pictures=$root/tools/pictures out=$root/build/pictures
 device=() settings=()
 while (($#)); do
     case $1 in
     --help | -h) usage_of "${BASH_SOURCE[0]}" && exit ;;
-    --scene | --size | --frames | --spp | --device | --set | --only)
+    --scene | --size | --frames | --spp | --device | --preset | --set | --only)
         need_value "$1" $#
         case $1 in
         --scene) scene=$2 ;;
@@ -26,6 +27,7 @@ while (($#)); do
         --frames) frames=$2 ;;
         --spp) spp=$2 ;;
         --device) device=(--device "$2") ;;
+        --preset) preset=$2 ;;
         --set) settings+=(--set "$2") ;;
         --only) only=$2 ;;
         esac
@@ -51,7 +53,7 @@ picture() {
     echo "$pictures/$name.png"
 }
 gi() {
-    picture "$@" --mode gi ${settings[@]+"${settings[@]}"}
+    picture "$@" --mode gi --preset "$preset" ${settings[@]+"${settings[@]}"}
 }
 
 # A view shows one frame: more shadow rays make the picture behind it smooth.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 
 namespace
 {
@@ -16,6 +17,11 @@ uint32_t strideFor(uint32_t pixel_count, uint32_t max_samples)
     return stride;
 }
 
+float diagonalOf(const gpu::SceneInfo& info)
+{
+    return std::hypot(info.bounds_max.x - info.bounds_min.x, info.bounds_max.y - info.bounds_min.y, info.bounds_max.z - info.bounds_min.z);
+}
+
 uint32_t levelsFor(uint32_t width, uint32_t height, uint32_t stride)
 {
     const uint32_t longest = (std::max(width, height) + stride - 1) / stride;
@@ -24,7 +30,7 @@ uint32_t levelsFor(uint32_t width, uint32_t height, uint32_t stride)
 } // namespace
 
 SamplesStage::SamplesStage(const Device& device, const SceneGpu& scene, uint32_t width, uint32_t height, uint32_t max_samples)
-    : width_(width), height_(height), stride_(strideFor(width * height, max_samples)), levels_(levelsFor(width, height, stride_)),
+    : width_(width), height_(height), diagonal_(diagonalOf(scene.info())), stride_(strideFor(width * height, max_samples)), levels_(levelsFor(width, height, stride_)),
       point_count_(1u << (2 * levels_)), points_kernel_(device.kernel("samples/points", scene.constants())),
       mean_(device.kernel("samples/mean")), variation_(device.kernel("samples/variation")), budget_(device.kernel("samples/budget")),
       seed_(device.kernel("samples/seed")), assign_(device.kernel("samples/assign")), update_(device.kernel("samples/update")),
@@ -59,13 +65,14 @@ SamplesStage::Output SamplesStage::record(Recorder& rec, const RayStage& rays, c
             gpu::PointParams{.width = width_, .height = height_, .stride = stride_, .levels = levels_, .seed = in.seed},
             {{"ShadingPoints", in.shading_points}, {"Points", points_}});
 
-    // Fixed point that cannot overflow: eps <= 2 + alpha x the scene's diagonal, which is at most sqrt(3) x its longest side.
+    // Fixed point that cannot overflow in any sum that is read, those of the root's children and below.
+    const float largest_eps = 2 + in.alpha * diagonal_;
     gpu::SeedParams seeding{.level = 0,
                             .levels = levels_,
                             .budget = in.budget,
                             .seed = in.seed,
                             .alpha = in.alpha,
-                            .variation_scale = 4294967040.0f / (8.0f * float(point_count_)),
+                            .variation_scale = 4294967040.0f / (largest_eps * float(point_count_ / 4)),
                             .uniform_ = in.mode == SamplesMode::kUniform};
     const auto levelThreads = [&](uint32_t level) { return 1u << (2 * (levels_ - level)); };
     for (seeding.level = 1; seeding.level <= levels_; ++seeding.level)

@@ -56,7 +56,9 @@ public:
 private:
     void assign(Recorder& rec, const gpu::ClusterParams& params) const;
 
-    uint32_t width_, height_, stride_, levels_, point_count_;
+    uint32_t width_, height_;
+    float diagonal_; // of the scene, metres
+    uint32_t stride_, levels_, point_count_;
     Kernel points_kernel_, mean_, variation_, budget_, seed_, assign_, update_, snap_, occupied_kernel_, place_;
     Compaction seed_compaction_, sample_compaction_;
     Tree tree_;

@@ -37,7 +37,7 @@ void main()
     uint id = work[i];
     PhotonNode node = photonNode(id);
     // A node of few photons is not worth dividing: its children's estimates would share nearly all of theirs.
-    bool small = node.count < max(2u * kCutFewest, params.photon_count / 4u);
+    bool small = node.count < 2u * kCutFewest;
     if (params.last == 0u && !small && !node.flat_)
     {
         divide(id);
@@ -48,9 +48,7 @@ void main()
     DensityEstimate estimate = estimateIrradiance(node.center, node.normal, size.count, params.photon_count, square(params.radius),
                                                   guess2 > 0.0 ? guess2 : square(params.radius) / 64.0);
     float exact = luminance(estimate.irradiance);
-    // A sum over n photons is known to 1 / sqrt(n): a difference that chance explains is no reason to divide.
-    float tolerance = params.difference + inversesqrt(float(node.count));
-    bool agrees = abs(exact - node.irradiance) <= tolerance * max(exact, node.irradiance);
+    bool agrees = abs(exact - node.irradiance) <= params.difference * max(exact, node.irradiance);
     if (params.last == 0u && !small && !agrees)
     {
         divide(id);

@@ -49,7 +49,7 @@ float nearestRadius2(vec3 x, vec3 n, uint photon_count, uint wanted, float radiu
         }
         if (b == kDensityBins)
         {
-            if (high >= radius2 || below > found)
+            if (high >= radius2 || refinement > 0u) // in a refinement: rounding has moved a photon out of its bin
                 return high;
             high = min(high * max(2.0, min(16.0, 1.5 * float(wanted) / float(max(found, 1u)))), radius2);
             below = 0u;

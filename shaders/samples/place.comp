@@ -18,8 +18,8 @@ layout(set = 1, binding = 4, scalar) writeonly buffer Samples { Sample samples[]
 layout(set = 1, binding = 5, scalar) writeonly buffer Spheres { vec4 spheres[]; };
 
 // A round cluster of radius rho has a mean distance of 2/3 rho; its neighbours lie at 2 rho, the next ones at 3.5 and 4 rho.
-// Reaching 4 rho it shares every place with about a dozen others.
-const float kSupportDistances = 6.0;
+// Reaching 3.5 rho it shares every place with about ten others.
+const float kSupportDistances = 5.0;
 
 void main()
 {

@@ -52,7 +52,8 @@ protected:
 
     static gpu::Photon photon(gpu::vec3 position, Double3 normal, Double3 direction, gpu::vec3 power)
     {
-        return {.position = position, .direction = packedNormal(direction), .power = power, .normal = packedNormal(normal)};
+        return {
+            .position = position, .direction = packedNormal(direction), .power = power, .normal = packedNormal(normal)};
     }
 
     /// Photons on floor and wall, denser in the middle; a third of them on the far side of their surface.
@@ -63,10 +64,12 @@ protected:
         for (uint32_t i = 0; i < count; ++i)
         {
             const double side = i % 3 == 0 ? -1 : 1;
-            const float x = random.between(-1.2f, 1.2f) * random.unit(), along = random.between(-0.9f, 0.9f) * random.unit();
+            const float x = random.between(-1.2f, 1.2f) * random.unit(),
+                        along = random.between(-0.9f, 0.9f) * random.unit();
             const gpu::vec3 power{random.unit(), random.unit(), 0.5f};
-            photons.push_back(i % 2 == 0 ? photon({x, 0, along}, {0, side, 0}, normalized({0.3, -side, 0.2}), power)
-                                         : photon({x, 1 + along, -1}, {0, 0, side}, normalized({0.3, 0.1, -side}), power));
+            photons.push_back(i % 2 == 0
+                                  ? photon({x, 0, along}, {0, side, 0}, normalized({0.3, -side, 0.2}), power)
+                                  : photon({x, 1 + along, -1}, {0, 0, side}, normalized({0.3, 0.1, -side}), power));
         }
         return photons;
     }
@@ -104,8 +107,8 @@ TEST_F(Caustics, AreTheDensityOfPhotonsAroundEveryPixel)
             exact += p.diffuse.x / kPi * bounds.exact;
             difference += std::abs(luminanceOf(got) - p.diffuse.x / kPi * bounds.exact);
         }
-        fmt::print("  k = {}: mean {:+.3f} %, mean difference {:.3f} % from the exact k-th distance\n", wanted, 100 * (sum / exact - 1),
-                   100 * difference / exact);
+        fmt::print("  k = {}: mean {:+.3f} %, mean difference {:.3f} % from the exact k-th distance\n", wanted,
+                   100 * (sum / exact - 1), 100 * difference / exact);
     }
 }
 
@@ -135,9 +138,9 @@ TEST_F(Caustics, OfAnEvenGridAreItsIrradiance)
     EXPECT_GT(compared, 50u);
 }
 
-TEST_F(Caustics, AreNothingWhereThereAreFewerThanEightPhotons)
+TEST_F(Caustics, AreDefinedForFewPhotonsAndForEqualOnes)
 {
-    for (const uint32_t count : {0u, 1u, 7u, 8u})
+    for (const uint32_t count : {0u, 1u, 7u, 100u})
     {
         const auto map = mapOf(*scene_, std::vector(count, photon({0, 0, 0}, {0, 1, 0}, {0, -1, 0}, {1, 1, 1})));
         uint32_t lit = 0;
@@ -146,7 +149,7 @@ TEST_F(Caustics, AreNothingWhereThereAreFewerThanEightPhotons)
             EXPECT_TRUE(std::isfinite(pixel.x));
             lit += pixel.x > 0;
         }
-        EXPECT_EQ(lit > 0, count >= 8) << count;
+        EXPECT_EQ(lit > 0, count > 0) << count;
     }
 }
 } // namespace

@@ -14,18 +14,57 @@ struct Double3
     Double3(gpu::vec3 v) : x(v.x), y(v.y), z(v.z) {} // NOLINT: every float is a double
 };
 
-inline Double3 operator+(Double3 a, Double3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-inline Double3 operator-(Double3 a, Double3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-inline Double3 operator*(double s, Double3 v) { return {s * v.x, s * v.y, s * v.z}; }
-inline double dot(Double3 a, Double3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-inline double length2(Double3 v) { return dot(v, v); }
-inline double length(Double3 v) { return std::sqrt(dot(v, v)); }
-inline Double3 normalized(Double3 v) { return (1 / length(v)) * v; }
-inline Double3 min(Double3 a, Double3 b) { return {std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)}; }
-inline Double3 max(Double3 a, Double3 b) { return {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)}; }
-inline double largest(Double3 v) { return std::max({v.x, v.y, v.z}); }
+inline Double3 operator+(Double3 a, Double3 b)
+{
+    return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+inline Double3 operator-(Double3 a, Double3 b)
+{
+    return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+inline Double3 operator*(double s, Double3 v)
+{
+    return {s * v.x, s * v.y, s * v.z};
+}
+inline double dot(Double3 a, Double3 b)
+{
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+inline double length2(Double3 v)
+{
+    return dot(v, v);
+}
+inline double length(Double3 v)
+{
+    return std::sqrt(dot(v, v));
+}
+inline Double3 normalized(Double3 v)
+{
+    return (1 / length(v)) * v;
+}
+inline Double3 min(Double3 a, Double3 b)
+{
+    return {std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)};
+}
+inline Double3 max(Double3 a, Double3 b)
+{
+    return {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)};
+}
+inline double largest(Double3 v)
+{
+    return std::max({v.x, v.y, v.z});
+}
 /// Rec. 709 luminance of linear RGB.
-inline double luminanceOf(Double3 rgb) { return 0.2126 * rgb.x + 0.7152 * rgb.y + 0.0722 * rgb.z; }
+inline double luminanceOf(Double3 rgb)
+{
+    return 0.2126 * rgb.x + 0.7152 * rgb.y + 0.0722 * rgb.z;
+}
+
+/// |d|^2 with d's part along the normal n counting four times (lib/math.glsl).
+inline double surfaceDistance2(Double3 d, Double3 n)
+{
+    return length2(d) + 15 * dot(d, n) * dot(d, n);
+}
 
 /// The unit vector that an octahedral encoding of 2 x 16-bit snorm stands for (Cigolle et al. 2014).
 inline Double3 unpackedNormal(uint32_t bits)

@@ -12,14 +12,17 @@
 /// A tree as it lies on the GPU.
 struct TreeData
 {
-    std::vector<gpu::TreeNode> nodes;                                // [count - 1]
-    std::vector<uint32_t> order, leaf_parents, node_parents;         // [count], [count], [count - 1]
+    std::vector<gpu::TreeNode> nodes;                        // [count - 1]
+    std::vector<uint32_t> order, leaf_parents, node_parents; // [count], [count], [count - 1]
 };
 
 /// A photon map: the stage that made it, and its contents.
 struct PhotonMap
 {
-    PhotonMap(const Device& device, const SceneGpu& scene, uint32_t max_slots) : rays(device, scene), stage(device, "test.map", max_slots) {}
+    PhotonMap(const Device& device, const SceneGpu& scene, uint32_t max_slots)
+        : rays(device, scene), stage(device, "test.map", max_slots)
+    {
+    }
 
     RayStage rays;
     PhotonTreeStage stage;
@@ -37,7 +40,8 @@ struct Cut
     std::vector<gpu::CutNode> sorted; // as the tree
 };
 
-/// What density estimation may give: the kernel finds the distance of the k-th photon by a histogram, to one of its bins.
+/// What density estimation may give: the kernel finds the distance of the k-th photon by a histogram, to one of its
+/// bins.
 struct DensityBounds
 {
     Double3 least, most; // W/m^2
@@ -76,8 +80,8 @@ protected:
     static std::vector<gpu::Photon> emit(const SceneGpu& scene, PhotonKind kind, const PhotonStage::Input& in);
 
     /// Renders with exactly `settings`, and expects every sample to be finite.
-    Picture renderGi(const SceneGpu& scene, const Camera& camera, const Settings& settings, uint32_t frame_count, uint32_t width,
-                     uint32_t height, uint32_t seed = 0);
+    Picture renderGi(const SceneGpu& scene, const Camera& camera, const Settings& settings, uint32_t frame_count,
+                     uint32_t width, uint32_t height, uint32_t seed = 0);
 
     static double diagonalOf(const SceneGpu& scene);
 };

@@ -17,7 +17,8 @@ protected:
     void SetUp() override
     {
         GiTest::SetUp();
-        const nlohmann::json colored = with(lambert(1), {{"pbrMetallicRoughness", {{"baseColorFactor", {0.8, 0.5, 0.2, 1}}}}});
+        const nlohmann::json colored =
+            with(lambert(1), {{"pbrMetallicRoughness", {{"baseColorFactor", {0.8, 0.5, 0.2, 1}}}}});
         builder_.floor(3, 0, builder_.material(colored));
         builder_.quad({-1.5f, 0, -1.5f}, {2, 0, 0}, {0, 2, 0}, builder_.material(lambert(0.5)));
         builder_.sphere({-0.4f, 0.4f, 0}, 0.4f, 16, true, builder_.material(lambert(0.6)));
@@ -68,7 +69,8 @@ protected:
         std::vector<gpu::vec4> spheres;
         for (const gpu::Sample& s : samples)
             spheres.push_back({s.position.x, s.position.y, s.position.z, s.support});
-        const Buffer size = sizeBuffer(count), on_gpu = upload("test.samples", samples), supports = upload("test.spheres", spheres);
+        const Buffer size = sizeBuffer(count), on_gpu = upload("test.samples", samples),
+                     supports = upload("test.spheres", spheres);
         const Buffer radiance = upload("test.radiance", std::vector<gpu::vec3>(kWidth * kHeight, before));
         const InterpolateStage stage(device(), *scene_, std::max(count, 1u));
         submit(*scene_,
@@ -81,13 +83,15 @@ protected:
                                  .alpha = float(kAlpha),
                                  .radius = float(kRadius)});
                });
-        return {contents<gpu::vec3>(radiance, kWidth * kHeight), contents<gpu::InterpolateStatistics>(stage.statistics(), 1)[0]};
+        return {contents<gpu::vec3>(radiance, kWidth * kHeight),
+                contents<gpu::InterpolateStatistics>(stage.statistics(), 1)[0]};
     }
 
     bool isLit(const ShadingPoints::Point& p) const { return p.exists && p.diffuse.x > 0; }
     Double3 reflected(const ShadingPoints::Point& p, Double3 e) const
     {
-        return {p.throughput.x * p.diffuse.x * e.x / kPi, p.throughput.y * p.diffuse.y * e.y / kPi, p.throughput.z * p.diffuse.z * e.z / kPi};
+        return {p.throughput.x * p.diffuse.x * e.x / kPi, p.throughput.y * p.diffuse.y * e.y / kPi,
+                p.throughput.z * p.diffuse.z * e.z / kPi};
     }
 
     SceneBuilder builder_;
@@ -100,7 +104,11 @@ TEST_F(Interpolation, LeavesEvenLightEven)
     for (const float support : {0.3f, 1.0f, 10.0f})
         for (const uint32_t count : {20u, 200u})
         {
-            const auto [radiance, statistics] = interpolated(samples(count, support, [] { return gpu::vec3{3, 2, 1}; }), {});
+            const auto [radiance, statistics] = interpolated(samples(count, support,
+                                                                     [] {
+                                                                         return gpu::vec3{3, 2, 1};
+                                                                     }),
+                                                             {});
             uint32_t dark = 0;
             for (uint32_t pixel = 0; pixel < kWidth * kHeight; ++pixel)
             {
@@ -115,8 +123,8 @@ TEST_F(Interpolation, LeavesEvenLightEven)
             }
             EXPECT_EQ(dark, statistics.unlit) << "and those only, which no sample is within reach of";
             EXPECT_TRUE(count < 200 || dark == 0) << dark;
-            fmt::print("  {} samples, support {} m: {} pixels without an accepted sample, {} without any\n", count, support,
-                       statistics.fallbacks, statistics.unlit);
+            fmt::print("  {} samples, support {} m: {} pixels without an accepted sample, {} without any\n", count,
+                       support, statistics.fallbacks, statistics.unlit);
         }
 }
 
@@ -124,7 +132,8 @@ TEST_F(Interpolation, LeavesEvenLightEven)
 double weightOf(const gpu::Sample& s, Double3 x, Double3 n, double& margin)
 {
     const Double3 d = x - Double3(s.position), normal = unpackedNormal(s.normal);
-    const double reach = 1 - length2(d) / (double(s.support) * s.support), front = dot(d, n + normal) + 0.01 * s.harmonic;
+    const double reach = 1 - surfaceDistance2(d, normal) / (double(s.support) * s.support),
+                 front = dot(d, n + normal) + 0.01 * s.harmonic;
     if (reach > -1e-4)
         margin = std::min({margin, std::abs(reach), std::abs(dot(n, normal) - 0.01), std::abs(front) / s.harmonic});
     if (reach <= 0 || dot(n, normal) <= 0.01 || front < 0)
@@ -149,30 +158,40 @@ TEST_F(Interpolation, WeighsSamplesByDistanceAndNormal)
             continue;
         }
         Double3 sum;
-        double weights = 0, margin = 1, best = kAlpha * kRadius + 2;
-        const gpu::Sample* nearest = nullptr;
+        double weights = 0, margin = 1, best = kAlpha * kRadius + 2; // of the samples in reach
+        bool in_reach = false;
+        const auto eps = [&](const gpu::Sample& s)
+        { return kAlpha * length(p.position - Double3(s.position)) + length(p.normal - unpackedNormal(s.normal)); };
         for (const gpu::Sample& s : all)
         {
             const double weight = weightOf(s, p.position, p.normal, margin);
             sum = sum + weight * Double3(s.irradiance);
             weights += weight;
-            const double distance = length(p.position - Double3(s.position));
-            if (const double eps = kAlpha * distance + length(p.normal - unpackedNormal(s.normal)); eps < best && distance < kRadius)
-                best = eps, nearest = &s;
+            if (eps(s) < best && length(p.position - Double3(s.position)) < kRadius)
+                best = eps(s), in_reach = true;
         }
         const bool falls_back = weights == 0;
         fallbacks += falls_back;
-        unlit += falls_back && nearest == nullptr;
-        const Double3 e = !falls_back ? (1 / weights) * sum : nearest != nullptr ? Double3(nearest->irradiance) : Double3();
+        unlit += falls_back && !in_reach;
         if (margin < 1e-4) // rounding may accept or refuse a sample
             continue;
         ++compared;
-        // Weights change by their own size over 1e-4 of normals' encoding; and the sum with `before` has an ulp of 1e-6.
-        EXPECT_LE(largest(max(got - reflected(p, e), reflected(p, e) - got)), 1e-3 * largest(reflected(p, e)) + 2e-6) << pixel;
+        // Weights change by their own size over 1e-4 of normals' encoding; and the sum with `before` has an ulp of
+        // 1e-6.
+        const auto matches = [&](Double3 e) {
+            return largest(max(got - reflected(p, e), reflected(p, e) - got)) <= 1e-3 * largest(reflected(p, e)) + 2e-6;
+        };
+        if (!falls_back)
+            EXPECT_TRUE(matches((1 / weights) * sum)) << pixel;
+        else // the best in reach, or a better one that is a little farther
+            EXPECT_TRUE((!in_reach && matches({})) ||
+                        std::ranges::any_of(all, [&](const gpu::Sample& s)
+                                            { return eps(s) < best + 1e-5 && matches(s.irradiance); }))
+                << pixel;
     }
     fmt::print("  {} pixels compared, {} without an accepted sample, {} without any\n", compared, fallbacks, unlit);
     EXPECT_EQ(statistics.fallbacks, fallbacks);
-    EXPECT_EQ(statistics.unlit, unlit);
+    EXPECT_LE(statistics.unlit, unlit);
     EXPECT_GT(fallbacks, unlit); // else the fallback was not tried
     EXPECT_GT(compared, kWidth * kHeight / 2);
 }

@@ -41,8 +41,8 @@ void expectPower(const Power& got, Double3 want, double largest_error, const cha
                                                         {got.sum.z, want.z, got.standard_error.z}};
     for (const auto& [sum, wanted, error] : channels)
     {
-        fmt::print("  {}: got {:.6g} W want {:.6g} W ({:+.3f} %, standard error {:.3f} %)\n", what, sum, wanted, 100 * (sum / wanted - 1),
-                   100 * error / wanted);
+        fmt::print("  {}: got {:.6g} W want {:.6g} W ({:+.3f} %, standard error {:.3f} %)\n", what, sum, wanted,
+                   100 * (sum / wanted - 1), 100 * error / wanted);
         EXPECT_LE(std::abs(sum - wanted), 4 * error + 1e-5 * wanted) << what;
         EXPECT_LE(error, largest_error * wanted) << what << ": too few photons to tell";
     }
@@ -79,7 +79,8 @@ void PrintTo(const Lit& value, std::ostream* out) // NOLINT: GoogleTest's name
 }
 
 const nlohmann::json kAbove{{"translation", {0.3, 2, -0.4}}};
-const nlohmann::json kDownwards{{"translation", {0.3, 2, -0.4}}, {"rotation", {-std::numbers::sqrt2 / 2, 0, 0, std::numbers::sqrt2 / 2}}};
+const nlohmann::json kDownwards{{"translation", {0.3, 2, -0.4}},
+                                {"rotation", {-std::numbers::sqrt2 / 2, 0, 0, std::numbers::sqrt2 / 2}}};
 
 nlohmann::json coloredLamp()
 {
@@ -102,8 +103,9 @@ std::vector<Lit> lights()
     const double lamp = 0.8 * 0.5;
     const auto room = [](SceneBuilder& builder) { addRoom(builder, lambert(0.5)); };
     const auto block = [](SceneBuilder& builder) { builder.box({0, 0, 0}, {3, 2, 5}, builder.material(lambert(0.5))); };
-    const auto quad = [](SceneBuilder& builder, const nlohmann::json& material)
-    { builder.quad({-0.4f, 2.5f, -0.25f}, {0.8f, 0, 0}, {0, 0, 0.5f}, builder.material(material)); };
+    const auto quad = [](SceneBuilder& builder, const nlohmann::json& material) {
+        builder.quad({-0.4f, 2.5f, -0.25f}, {0.8f, 0, 0}, {0, 0, 0.5f}, builder.material(material));
+    };
     return {
         {"Point",
          [=](SceneBuilder& builder)
@@ -157,7 +159,9 @@ std::vector<Lit> lights()
              builder.box({0, 0, 0}, {3, 2, 5}, builder.material(lambert(0.5)));
              builder.box({10, 0, 0}, {13, 2, 5}, builder.material(lambert(0.5)), true); // dark outside, lit within
              builder.light({{"type", "point"}, {"intensity", 3}}, {{"translation", {11, 1, 1}}});
-             builder.light({{"type", "spot"}, {"intensity", 8}, {"spot", {{"innerConeAngle", kInner}, {"outerConeAngle", kOuter}}}},
+             builder.light({{"type", "spot"},
+                            {"intensity", 8},
+                            {"spot", {{"innerConeAngle", kInner}, {"outerConeAngle", kOuter}}}},
                            {{"translation", {12, 1, 2}}});
              builder.quad({11, 1.5f, 2}, {0.8f, 0, 0}, {0, 0, 0.5f}, builder.material(emitter(5)));
              builder.light({{"type", "directional"}, {"intensity", 2}},
@@ -176,7 +180,8 @@ TEST_P(Lights, GivePhotonsTheirPower)
     SceneBuilder builder;
     GetParam().build(builder);
     const auto scene = load(builder.compile());
-    expectPower(powerOf(emit(*scene, PhotonKind::kGlobal, firstHits()), kAll), GetParam().power, GetParam().largest_error, GetParam().name);
+    expectPower(powerOf(emit(*scene, PhotonKind::kGlobal, firstHits()), kAll), GetParam().power,
+                GetParam().largest_error, GetParam().name);
 }
 
 INSTANTIATE_TEST_SUITE_P(, Lights, testing::ValuesIn(lights()), [](const auto& lit) { return lit.param.name; });
@@ -195,7 +200,8 @@ TEST_F(Photons, LoseWhatSurfacesAbsorbAtEveryBounce)
     for (in.bounce_limit = 1; in.bounce_limit <= 5; ++in.bounce_limit)
     {
         const auto photons = emit(*scene, PhotonKind::kGlobal, in);
-        expectPower(powerOf(std::span(photons).subspan(before), kAll), expected, 0.1, fmt::format("bounce {}", in.bounce_limit).c_str());
+        expectPower(powerOf(std::span(photons).subspan(before), kAll), expected, 0.1,
+                    fmt::format("bounce {}", in.bounce_limit).c_str());
         before = photons.size();
         expected = {0.8 * expected.x, 0.5 * expected.y, 0.2 * expected.z};
     }
@@ -215,7 +221,8 @@ TEST_F(Photons, PassGlassWithoutLoss)
     PhotonStage::Input in = firstHits();
     in.specular_depth = 32;
     const auto photons = emit(*scene, PhotonKind::kGlobal, in);
-    const Double3 through = powerOf(photons, [](const gpu::Photon& p) { return length2(Double3(p.position) - Double3(0, 0, 0)) < 1; }).sum;
+    const Double3 through =
+        powerOf(photons, [](const gpu::Photon& p) { return length2(Double3(p.position) - Double3(0, 0, 0)) < 1; }).sum;
     EXPECT_GT(through.x, 0.1 * 4 * kPi); // the sphere focuses on the floor below it what it takes in
     expectPower(powerOf(photons, kAll), 4 * kPi * Double3(1, 1, 1), 0.02, "all");
 }
@@ -270,9 +277,12 @@ TEST_F(Photons, ContinueTheSequenceOfTheFrameBefore)
 
 // ---- Caustic photons -----------------------------------------------------------------------------------------------
 
-/// A photon of white light that met the red mirrors of the scenes below; red light at grazing incidence stays white only
-/// within 1e-5 of 90 degrees.
-bool isTinted(const gpu::Photon& photon) { return photon.power.y < 0.9999f * photon.power.x; }
+/// A photon of white light that met the red mirrors of the scenes below; red light at grazing incidence stays white
+/// only within 1e-5 of 90 degrees.
+bool isTinted(const gpu::Photon& photon)
+{
+    return photon.power.y < 0.9999f * photon.power.x;
+}
 
 /// Two mirror spheres, one in front of the other, and a mirror block: their targets overlap.
 void addMirrors(SceneBuilder& builder)
@@ -298,8 +308,9 @@ std::vector<Aimed> aimedLights()
 {
     const auto room = [](SceneBuilder& builder) { addRoom(builder, lambert(0.5)); };
     const auto floor = [](SceneBuilder& builder) { builder.floor(4, 0, builder.material(lambert(0.5))); };
-    const auto quad = [](SceneBuilder& builder, const nlohmann::json& material)
-    { builder.quad({-0.4f, 2.2f, -0.25f}, {0.8f, 0, 0}, {0, 0, 0.5f}, builder.material(material)); };
+    const auto quad = [](SceneBuilder& builder, const nlohmann::json& material) {
+        builder.quad({-0.4f, 2.2f, -0.25f}, {0.8f, 0, 0}, {0, 0, 0.5f}, builder.material(material));
+    };
     return {{"Point",
              [=](SceneBuilder& builder)
              {
@@ -316,7 +327,9 @@ std::vector<Aimed> aimedLights()
              [=](SceneBuilder& builder)
              {
                  room(builder);
-                 builder.light({{"type", "spot"}, {"intensity", 3}, {"spot", {{"innerConeAngle", 0.3}, {"outerConeAngle", 0.6}}}}, kDownwards);
+                 builder.light(
+                     {{"type", "spot"}, {"intensity", 3}, {"spot", {{"innerConeAngle", 0.3}, {"outerConeAngle", 0.6}}}},
+                     kDownwards);
              }},
             {"Directional",
              [=](SceneBuilder& builder)
@@ -344,8 +357,7 @@ std::vector<Aimed> aimedLights()
                  floor(builder);
                  builder.environment(sky(1, 1, 1));
              }},
-            {"Several",
-             [=](SceneBuilder& builder)
+            {"Several", [=](SceneBuilder& builder)
              {
                  room(builder);
                  quad(builder, emitter(5));
@@ -384,7 +396,8 @@ TEST_P(AimedPhotons, BringAsMuchToTheSamePlacesAsUnaimedOnes)
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(, AimedPhotons, testing::ValuesIn(aimedLights()), [](const auto& lit) { return lit.param.name; });
+INSTANTIATE_TEST_SUITE_P(, AimedPhotons, testing::ValuesIn(aimedLights()),
+                         [](const auto& lit) { return lit.param.name; });
 
 TEST_F(Photons, AreNotCausticWithoutMirrorsOrGlass)
 {

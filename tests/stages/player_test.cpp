@@ -213,7 +213,7 @@ TEST_F(Player, HelpNamesTheExitCodesAndVersionTheVersion)
 
 TEST_F(Player, RendersBothModesWithoutAValidationMessage)
 {
-    for (const std::string mode : {"direct", "reference"})
+    for (const std::string mode : {"gi", "direct", "reference"})
     {
         const std::set<std::string> before = files();
         const std::string png = render(mode + ".png", "--spp 2 --mode " + mode);
@@ -235,7 +235,7 @@ TEST_F(Player, RendersBothModesWithoutAValidationMessage)
 
 TEST_F(Player, RendersTheSameBytesForTheSameSeedAndOthersForAnother)
 {
-    for (const std::string mode : {"direct", "reference"})
+    for (const std::string mode : {"gi", "direct", "reference"})
     {
         const std::string arguments = "--spp 3 --mode " + mode;
         const std::string picture = render("a.exr", arguments + " --seed 7");

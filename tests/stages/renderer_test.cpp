@@ -1,4 +1,4 @@
-// The frame as a whole: equal input gives equal bits, and how samples are batched does not show.
+// The frame as a whole: equal input gives equal bits, how samples are batched does not show, and what measurements need.
 #include "tests/stages/gpu_test.h"
 #include "tests/stages/scene_builder.h"
 
@@ -149,5 +149,74 @@ TEST_F(Batches, OfAnySizeAgreeStatisticallyWithTranslucency)
         constexpr double kSigmas = 4.5;
         EXPECT_LE(std::abs(mean), kSigmas * std::sqrt((square_mean - mean * mean) / count)) << batch;
     }
+}
+
+class Measured : public GpuTest
+{
+protected:
+    /// A floor alone under a sun that shines straight down.
+    std::unique_ptr<SceneGpu> sunlitFloor(SceneBuilder& scene, double lux)
+    {
+        scene.floor(2, 0, scene.material(lambert(0.5)));
+        scene.light({{"type", "directional"}, {"intensity", lux}}, {{"rotation", {-std::sqrt(0.5), 0, 0, std::sqrt(0.5)}}});
+        package_ = scene.compile();
+        return load(package_);
+    }
+    std::filesystem::path package_;
+    Camera down_{.name = "", .position = {0, 1, 0}, .forward = {0, -1, 0}, .up = {0, 0, -1}, .vertical_fov = 1, .orthographic_height = 0};
+};
+
+TEST_F(Measured, LightSetOnTheDeviceIsTheOneThatShines)
+{
+    SceneBuilder builder;
+    const auto scene = sunlitFloor(builder, 3);
+    const auto package = package::Package::open(package_);
+    ASSERT_TRUE(package);
+    Renderer renderer(device(), *scene, Mode::kDirect, kWidth, kHeight);
+    Recorder rec(device());
+    const auto picture = [&](const gpu::Light* light)
+    {
+        rec.begin(scene->descriptorSet());
+        renderer.restart();
+        renderer.record(rec, down_, Settings(), 1); // kernels that read the light before it is written
+        if (light)
+            scene->setLight(rec, 0, *light);
+        renderer.restart();
+        renderer.record(rec, down_, Settings(), 1);
+        rec.submitAndWait();
+        return renderer.picture(device());
+    };
+    gpu::Light light = package->lights()[0];
+    const auto before = picture(nullptr);
+    light.emission = 2.0f * light.emission;
+    const auto doubled = picture(&light);
+    uint32_t wrong = 0;
+    for (size_t i = 0; i < before.size(); ++i) // twice a float is exact
+        wrong += doubled[i].x != 2 * before[i].x || before[i].x <= 0;
+    EXPECT_EQ(wrong, 0u);
+    EXPECT_TRUE(equalBits(doubled, picture(nullptr))) << "it stays as it was set";
+}
+
+TEST_F(Measured, RaysAreCountedByScopeAndKind)
+{
+    SceneBuilder builder;
+    const auto scene = sunlitFloor(builder, 3);
+    Renderer renderer(device(), *scene, Mode::kDirect, kWidth, kHeight);
+    RayTally tally(device());
+    renderer.countRays(&tally);
+    Recorder rec(device());
+    Settings settings;
+    settings.direct_samples = 3;
+    rec.begin(scene->descriptorSet());
+    renderer.record(rec, down_, settings, 1);
+    rec.submitAndWait();
+    const auto entries = tally.entries();
+    ASSERT_EQ(entries.size(), 2u); // no light with an extent: no rays look for one
+    EXPECT_EQ(entries[0].scope, "primary");
+    EXPECT_FALSE(entries[0].any_hit);
+    EXPECT_EQ(entries[0].ray_count, kWidth * kHeight);
+    EXPECT_EQ(entries[1].scope, "direct");
+    EXPECT_TRUE(entries[1].any_hit);
+    EXPECT_EQ(entries[1].ray_count, 3 * kWidth * kHeight); // the floor fills the picture
 }
 } // namespace

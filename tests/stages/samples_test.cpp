@@ -10,7 +10,6 @@ namespace
 {
 constexpr uint32_t kWidth = 48, kHeight = 40;
 constexpr uint32_t kLevels = 6; // 64 x 64 pixels hold the picture
-constexpr double kAlpha = 0.3;  // of Eq. 2, per metre
 
 double variation(double alpha, Double3 x, Double3 n, Double3 center, Double3 normal)
 {
@@ -41,7 +40,8 @@ struct Cluster
 class SamplesTest : public GiTest
 {
 protected:
-    /// Walls, a sphere and a box before a dark background; a mirror shows what is diffuse beyond it, a black box nothing.
+    /// Walls, a sphere and a box before a dark background; a mirror shows what is diffuse beyond it, a black box
+    /// nothing.
     void SetUp() override
     {
         GiTest::SetUp();
@@ -74,7 +74,7 @@ protected:
                                                .mode = mode,
                                                .budget = budget,
                                                .iterations = iterations,
-                                               .alpha = float(kAlpha),
+                                               .alpha = float(alpha_),
                                                .seed = seed}));
                });
         return contents<gpu::Sample>(out->samples, countOf(out->size));
@@ -101,7 +101,7 @@ protected:
                     normal = normal + points_->points[pixel].normal;
                 }
                 for (const uint32_t pixel : node.pixels)
-                    node.variation += variation(kAlpha, points_->points[pixel].position, points_->points[pixel].normal,
+                    node.variation += variation(alpha_, points_->points[pixel].position, points_->points[pixel].normal,
                                                 (1.0 / double(node.pixels.size())) * position, normalized(normal));
             }
         }
@@ -119,7 +119,9 @@ protected:
             uint32_t owner = 0;
             double best = 1e30;
             for (uint32_t c = 0; c < clusters.size(); ++c)
-                if (const double eps = variation(kAlpha, p.position, p.normal, clusters[c].position, clusters[c].normal); eps < best)
+                if (const double eps =
+                        variation(alpha_, p.position, p.normal, clusters[c].position, clusters[c].normal);
+                    eps < best)
                     best = eps, owner = c;
             owners.push_back(owner);
             total += best;
@@ -144,12 +146,14 @@ protected:
     }
 
     static constexpr uint32_t kMostSamples = 128;
-    static inline const Camera kCamera{.name = "",
-                                       .position = {0.4f, 1.2f, 2.4f},
-                                       .forward = normalize({-0.15f, -0.35f, -1}),
-                                       .up = normalize(cross(cross({-0.15f, -0.35f, -1}, {0, 1, 0}), {-0.15f, -0.35f, -1})),
-                                       .vertical_fov = 0.9f,
-                                       .orthographic_height = 0};
+    static inline const Camera kCamera{
+        .name = "",
+        .position = {0.4f, 1.2f, 2.4f},
+        .forward = normalize({-0.15f, -0.35f, -1}),
+        .up = normalize(cross(cross({-0.15f, -0.35f, -1}, {0, 1, 0}), {-0.15f, -0.35f, -1})),
+        .vertical_fov = 0.9f,
+        .orthographic_height = 0};
+    double alpha_ = 5; // of Eq. 2, per metre
     SceneBuilder builder_;
     std::unique_ptr<SceneGpu> scene_;
     std::optional<ShadingPoints> points_;
@@ -170,7 +174,7 @@ TEST_F(SamplesTest, AreDistinctShadingPointsOfDiffuseSurfaces)
             ASSERT_LT(sample.pixel, kWidth * kHeight);
             const ShadingPoints::Point& point = points_->points[sample.pixel];
             EXPECT_TRUE(point.exists && point.diffuse.x > 0) << sample.pixel;
-            EXPECT_LT(length(Double3(sample.position) - point.position), 1e-5); // roundings of numbers up to 2
+            EXPECT_LT(length(Double3(sample.position) - point.position), 1e-5);    // roundings of numbers up to 2
             EXPECT_LT(length(unpackedNormal(sample.normal) - point.normal), 1e-4); // of 16-bit encodings
             EXPECT_GT(sample.support, 0);
         }
@@ -214,7 +218,7 @@ TEST_F(SamplesTest, AreNoMoreThanThereAreShadingPoints)
                                          .mode = SamplesMode::kSeeded,
                                          .budget = kMostSamples,
                                          .iterations = 0,
-                                         .alpha = float(kAlpha),
+                                         .alpha = float(alpha_),
                                          .seed = 1}));
            });
     const auto all = contents<gpu::Sample>(out->samples, countOf(out->size));
@@ -224,8 +228,12 @@ TEST_F(SamplesTest, AreNoMoreThanThereAreShadingPoints)
 
 TEST_F(SamplesTest, AreSharedOutByVariation)
 {
-    for (const SamplesMode mode : {SamplesMode::kUniform, SamplesMode::kSeeded})
+    for (const auto& [mode, alpha] : {std::pair{SamplesMode::kUniform, 5.0},
+                                      {SamplesMode::kSeeded, 0.3},
+                                      {SamplesMode::kSeeded, 5.0},
+                                      {SamplesMode::kSeeded, 600.0}})
     {
+        alpha_ = alpha;
         uint32_t checked = 0;
         for (uint32_t seed = 1; seed <= 4; ++seed)
         {
@@ -242,28 +250,32 @@ TEST_F(SamplesTest, AreSharedOutByVariation)
                     const auto due = [&](const QuadNode& child)
                     {
                         const bool by_count = mode == SamplesMode::kUniform || variations == 0;
-                        return budget * (by_count ? double(child.pixels.size()) / double(std::max<size_t>(levels[level][i].pixels.size(), 1))
+                        return budget * (by_count ? double(child.pixels.size()) /
+                                                        double(std::max<size_t>(levels[level][i].pixels.size(), 1))
                                                   : child.variation / variations);
                     };
                     for (const QuadNode& child : children)
                         EXPECT_LE(child.samples, child.pixels.size());
                     // Where no child is full, each gets its due, rounded up or down; 1e-3: fixed-point sums.
-                    if (std::ranges::any_of(children, [&](const QuadNode& c) { return due(c) + 1 > double(c.pixels.size()); }))
+                    if (std::ranges::any_of(children,
+                                            [&](const QuadNode& c) { return due(c) + 1 > double(c.pixels.size()); }))
                         continue;
                     for (const QuadNode& child : children)
-                        EXPECT_LT(std::abs(child.samples - due(child)), 1 + 1e-3 * budget) << "level " << level << ", node " << i;
+                        EXPECT_LT(std::abs(child.samples - due(child)), 1 + 1e-3 * budget)
+                            << "level " << level << ", node " << i;
                     checked += budget > 0;
                 }
         }
-        fmt::print("  mode {}: {} nodes' splits checked\n", uint32_t(mode), checked);
+        fmt::print("  mode {}, alpha {} 1/m: {} nodes' splits checked\n", uint32_t(mode), alpha, checked);
         EXPECT_GT(checked, 100u);
     }
 }
 
 TEST_F(SamplesTest, AreThoseOfKMeans)
 {
-    for (const uint32_t seed : {1u, 2u, 3u})
+    for (const auto& [seed, alpha] : {std::pair{1u, 0.3}, {2u, 5.0}, {3u, 5.0}})
     {
+        alpha_ = alpha;
         const auto seeds = samples(SamplesMode::kSeeded, 64, 0, seed);
         std::vector<Cluster> clusters = clustersOf(seeds);
         auto [owners, total] = assigned(clusters);
@@ -287,23 +299,37 @@ TEST_F(SamplesTest, AreThoseOfKMeans)
             {
                 const ShadingPoints::Point& p = points_->points[taking_part_[i]];
                 const Cluster& c = clusters[owners[i]];
-                const std::pair found{variation(kAlpha, p.position, p.normal, c.position, c.normal), taking_part_[i]};
+                const std::pair found{variation(alpha_, p.position, p.normal, c.position, c.normal), taking_part_[i]};
                 const auto [entry, is_new] = nearest.emplace(owners[i], found);
                 if (!is_new && found.first < entry->second.first)
                     entry->second = found;
             }
-            std::set<uint32_t> expected;
-            for (const auto& [cluster, found] : nearest)
-                expected.insert(found.second);
+            // 16-bit normals and fixed-point sums let eps differ by 1e-4: of points so near each other any may be the
+            // nearest.
+            constexpr double kTie = 2e-4;
             const auto got = samples(SamplesMode::kKmeans, 64, iterations, seed);
+            std::set<uint32_t> expected;
             uint32_t common = 0;
-            for (const uint32_t pixel : pixelsOf(got))
-                common += uint32_t(expected.count(pixel));
-            fmt::print("  seed {}, iteration {}: total eps {:.4f} -> {:.4f}; {} samples, {} of them the twin's; eps to samples {:.4f}\n", seed,
-                       iterations, before, total, got.size(), common, assigned(clustersOf(got)).second);
+            for (const auto& [cluster, found] : nearest)
+            {
+                const auto& [least, pixel] = found;
+                const Cluster& c = clusters[cluster];
+                expected.insert(pixel);
+                common += uint32_t(std::ranges::any_of(got,
+                                                       [&, bound = least + kTie](const gpu::Sample& sample)
+                                                       {
+                                                           const ShadingPoints::Point& p =
+                                                               points_->points[sample.pixel];
+                                                           return variation(alpha_, p.position, p.normal, c.position,
+                                                                            c.normal) <= bound;
+                                                       }));
+            }
+            fmt::print("  alpha {} 1/m, seed {}, iteration {}: total eps {:.4f} -> {:.4f}; {} samples, {} of them the "
+                       "twin's; eps to samples {:.4f}\n",
+                       alpha, seed, iterations, before, total, got.size(), common, assigned(clustersOf(got)).second);
             EXPECT_LE(total, before);
             EXPECT_EQ(got.size(), expected.size());
-            EXPECT_EQ(common, got.size());
+            EXPECT_GE(common, got.size() - 1); // a point between two clusters that goes to the other one moves both
         }
     }
 }

@@ -17,8 +17,6 @@ ShadingPoints::Point pointAt(const package::Package& package, const gpu::Shading
     Double3 normal = normalized(interpolated(normalOf(v.x), normalOf(v.y), normalOf(v.z)));
     if (dot(facing, direction) >= 0)
         normal = -1 * normal;
-    if (const double away = dot(normal, direction); away > -1e-3)
-        normal = normalized(normal - (away + 1e-3) * direction);
     const gpu::Material& m = package.materials()[t.material];
     return {.exists = true,
             .position = interpolated(t.v0, t.v1, t.v2),
@@ -28,8 +26,8 @@ ShadingPoints::Point pointAt(const package::Package& package, const gpu::Shading
 }
 } // namespace
 
-ShadingPoints::ShadingPoints(const Device& device, const SceneGpu& scene, const std::filesystem::path& path, const Camera& camera,
-                             uint32_t width_, uint32_t height_)
+ShadingPoints::ShadingPoints(const Device& device, const SceneGpu& scene, const std::filesystem::path& path,
+                             const Camera& camera, uint32_t width_, uint32_t height_)
     : width(width_), height(height_), stage(device, scene, width * height)
 {
     const auto package = package::Package::open(path);

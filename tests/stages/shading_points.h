@@ -7,13 +7,13 @@
 struct ShadingPoints
 {
     /// What `camera` sees. @param path the scene's package
-    ShadingPoints(const Device& device, const SceneGpu& scene, const std::filesystem::path& path, const Camera& camera, uint32_t width,
-                  uint32_t height);
+    ShadingPoints(const Device& device, const SceneGpu& scene, const std::filesystem::path& path, const Camera& camera,
+                  uint32_t width, uint32_t height);
 
     struct Point
     {
-        bool exists; // not the background
-        Double3 position, normal; // shading normal
+        bool exists;              // not the background
+        Double3 position, normal; // metres; smooth normal on the viewer's side
         Double3 diffuse;          // base colour of what is not metal
         Double3 throughput;
     };

@@ -44,8 +44,8 @@ std::vector<gpu::vec4> randomSpheres(uint32_t count, float radius, gpu::uvec3 ce
     Random random(3);
     std::vector<gpu::vec4> spheres;
     for (uint32_t i = 0; i < count; ++i)
-        spheres.push_back(inCell({random.below(cells.x), random.below(cells.y), random.below(cells.z)}, radius * random.unit(),
-                                 random.between(-0.4f, 0.4f)));
+        spheres.push_back(inCell({random.below(cells.x), random.below(cells.y), random.below(cells.z)},
+                                 radius * random.unit(), random.between(-0.4f, 0.4f)));
     return spheres;
 }
 
@@ -76,7 +76,8 @@ class Trees : public GiTest, public testing::WithParamInterface<Case>
 {
 };
 
-/// Where a range of sorted codes divides: at the highest bit in which its ends differ, of indices where the codes do not.
+/// Where a range of sorted codes divides: at the highest bit in which its ends differ, of indices where the codes do
+/// not.
 uint32_t splitOf(std::span<const uint32_t> codes, uint32_t first, uint32_t last)
 {
     const bool equal = codes[first] == codes[last];
@@ -107,8 +108,8 @@ struct Walk
         }
         for (const auto& [got, want] : {std::pair{low, least}, {high, most}})
             EXPECT_TRUE(got.x == want.x && got.y == want.y && got.z == want.z)
-                << "spheres " << first << " to " << end << ": " << got.x << ' ' << got.y << ' ' << got.z << " is not " << want.x << ' '
-                << want.y << ' ' << want.z;
+                << "spheres " << first << " to " << end << ": " << got.x << ' ' << got.y << ' ' << got.z << " is not "
+                << want.x << ' ' << want.y << ' ' << want.z;
     }
 
     /// @param child as stored by its parent, whose index and side are `parent`
@@ -166,7 +167,10 @@ TEST_P(Trees, AreThoseOfTheSortedMortonCodes)
         codes.push_back(mortonCode(spheres[i]));
     if (count < 2 || HasFailure())
         return;
-    Walk walk{.tree = tree, .codes = codes, .spheres = spheres, .leaf_visits = std::vector<uint32_t>(count),
+    Walk walk{.tree = tree,
+              .codes = codes,
+              .spheres = spheres,
+              .leaf_visits = std::vector<uint32_t>(count),
               .node_visits = std::vector<uint32_t>(count - 1)};
     walk.expectNode(0, 0, count, 0);
     EXPECT_EQ(walk.leaf_visits, std::vector<uint32_t>(count, 1)); // each in exactly one leaf

@@ -6,6 +6,9 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+#include <sstream>
+
 namespace
 {
 
@@ -42,6 +45,24 @@ TEST_F(Compare, JsonIsTheWholeOfStdout)
     for (const char* key : {"rmse", "relmse", "relmse_trimmed", "hdr_flip", "ldr_flip"})
         EXPECT_GT(json[key].get<double>(), 0) << key;
     EXPECT_GT(json["relmse"], json["relmse_trimmed"]);
+}
+
+TEST_F(Compare, TsvIsOneLineOfTheFiguresOfJson)
+{
+    const ProgramRun run = compare(pair() + " --tsv"), json_run = compare(pair() + " --json");
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    const nlohmann::json json = nlohmann::json::parse(json_run.out);
+    const std::vector<double> expected{json["mean_ratio"][0], json["mean_ratio"][1], json["mean_ratio"][2], json["relmse"],
+                                       json["relmse_trimmed"], json["ldr_flip"], json["hdr_flip"], 0};
+    std::istringstream text(run.out);
+    std::vector<double> figures;
+    for (double figure; text >> figure;)
+        figures.push_back(figure);
+    ASSERT_EQ(figures.size(), expected.size()) << run.out;
+    for (size_t i = 0; i < expected.size(); ++i)
+        EXPECT_NEAR(figures[i], expected[i], 1e-6 + 1e-5 * expected[i]) << i; // as many digits as are printed
+    EXPECT_EQ(std::ranges::count(run.out, '\n'), 1);
+    EXPECT_EQ(compare(pair() + " --tsv --json").exit_code, 1);
 }
 
 TEST_F(Compare, CropLooksAtThatPartOnly)

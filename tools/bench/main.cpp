@@ -20,6 +20,7 @@ struct CommandLine
     LookupBenchOptions lookup;
     PrimitiveBenchOptions primitives;
     std::string size = "1920x1080";
+    std::string preset = "default";
     std::vector<std::string> assignments;
 };
 
@@ -40,6 +41,7 @@ void addSize(CLI::App* command, CommandLine& line)
 
 void addSettings(CLI::App* command, CommandLine& line)
 {
+    command->add_option("--preset", line.preset, "preview, default or high")->capture_default_str();
     command->add_option("--set", line.assignments, "change a setting, name=value; may be repeated")->allow_extra_args(false);
 }
 
@@ -101,11 +103,10 @@ Status readTexts(CommandLine& line)
         options->width = width;
         options->height = height;
     }
-    Settings settings;
-    for (const std::string& assignment : line.assignments)
-        if (const Status status = applySetting(settings, assignment); !status)
-            return status;
-    line.frame.settings = line.converge.settings = line.lookup.settings = settings;
+    const auto settings = makeSettings(line.preset, line.assignments);
+    if (!settings)
+        return settings.error();
+    line.frame.settings = line.converge.settings = line.lookup.settings = *settings;
     return Success{};
 }
 
