@@ -32,7 +32,12 @@ struct GlobalIllumination::Frame
     uint32_t pixel_count;
     uint32_t index; // in a standing picture
     uint32_t seed;  // of this frame alone
-    bool shows(uint32_t term) const { return settings.term == gpu::kTermAll || settings.term == term; }
+    bool shows(uint32_t term) const
+    {
+        if (settings.view != gpu::kViewNone)
+            return settings.view != gpu::kViewIrradiance || term == gpu::kTermIndirect;
+        return settings.term == gpu::kTermAll || settings.term == term;
+    }
 };
 
 Status GlobalIllumination::checkCounts(uint64_t range, const Settings& settings)
@@ -60,7 +65,7 @@ GlobalIllumination::GlobalIllumination(const Device& device, const SceneGpu& sce
       caustic_tree_(device, "caustic_tree", settings.caustic_photons * kCausticBounces),
       cut_(device, settings.photon_count * settings.photon_bounces), samples_(device, scene, width, height, settings.sample_count),
       gather_(device, scene, settings.sample_count, settings.gather_rays), interpolate_(device, scene, settings.sample_count),
-      glossy_(device, scene, width * height), caustics_(device, scene)
+      glossy_(device, scene, width * height), caustics_(device, scene), views_(device, scene, width * height)
 {
     const gpu::SceneInfo& info = scene.info();
     const float x = info.bounds_max.x - info.bounds_min.x, y = info.bounds_max.y - info.bounds_min.y;
@@ -97,6 +102,8 @@ const Buffer& GlobalIllumination::record(Recorder& rec, const RayStage& rays, co
     }
     if (has_specular_ && frame.shows(gpu::kTermCaustics))
         recordCaustics(frame);
+    if (settings.view != gpu::kViewNone)
+        recordView(frame);
     return frame.radiance;
 }
 
@@ -180,7 +187,8 @@ void GlobalIllumination::recordIndirect(const Frame& frame, const PhotonTreeStag
                          .radiance = frame.radiance,
                          .point_count = frame.pixel_count,
                          .alpha = alpha,
-                         .radius = radius});
+                         .radius = radius,
+                         .white = settings.view == gpu::kViewIrradiance});
 }
 
 void GlobalIllumination::recordGlossy(const Frame& frame, const CutStage::Output& cut) const
@@ -214,4 +222,29 @@ void GlobalIllumination::recordCaustics(const Frame& frame) const
                       .point_count = frame.pixel_count,
                       .photon_count = settings.caustic_density_photons,
                       .radius = shrunkRadius(settings.caustic_radius * diagonal_, frame.index)});
+}
+
+void GlobalIllumination::recordView(const Frame& frame) const
+{
+    const auto scope = frame.rec.scope("view");
+    const ViewsStage::Input in{.view = frame.settings.view,
+                               .camera = frame.camera,
+                               .points = frame.points,
+                               .radiance = frame.radiance,
+                               .exposure = frame.settings.exposure,
+                               .tonemap = frame.settings.tonemap,
+                               .budget = frame.settings.sample_count};
+    switch (in.view)
+    {
+    case gpu::kViewNormals:
+    case gpu::kViewPositions: return views_.recordPoints(frame.rec, in);
+    case gpu::kViewSamples: return views_.recordSamples(frame.rec, in, samples_.output());
+    case gpu::kViewClusters:
+    case gpu::kViewBudget: return views_.recordQuadtree(frame.rec, in, samples_.output(), samples_.quadtree());
+    case gpu::kViewPhotons: return views_.recordPhotons(frame.rec, in, photon_tree_.output());
+    case gpu::kViewTree: return views_.recordTree(frame.rec, in, photon_tree_.output());
+    case gpu::kViewCut: return views_.recordCut(frame.rec, in, cut_.output());
+    case gpu::kViewNonFinite: return views_.recordNonFinite(frame.rec, in);
+    default: return; // kViewIrradiance: interpolation has left it
+    }
 }

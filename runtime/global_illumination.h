@@ -8,6 +8,7 @@
 #include "runtime/stages/glossy.h"
 #include "runtime/stages/interpolate.h"
 #include "runtime/stages/primary.h"
+#include "runtime/stages/views.h"
 
 class GlobalIllumination
 {
@@ -19,7 +20,8 @@ public:
     /// photons, samples and rays, not for more.
     GlobalIllumination(const Device& device, const SceneGpu& scene, const Settings& settings, uint32_t width, uint32_t height);
 
-    /// Records one frame: one sample a pixel, vec3[width * height]; of settings.term alone where that is not all.
+    /// Records one frame: one sample a pixel, vec3[width * height]; of settings.term alone where that is not all, and
+    /// the colours of settings.view where that is one, whatever the term.
     /// @param camera with first_sample: the frame's index in a standing picture
     const Buffer& record(Recorder& rec, const RayStage& rays, const gpu::CameraParams& camera, const Settings& settings);
     /// Of the last frame; waits for the device.
@@ -34,6 +36,7 @@ private:
     void recordIndirect(const Frame& frame, const PhotonTreeStage::Output& map, const CutStage::Output& cut) const;
     void recordGlossy(const Frame& frame, const CutStage::Output& cut) const;
     void recordCaustics(const Frame& frame) const;
+    void recordView(const Frame& frame) const;
 
     uint32_t width_, height_;
     float diagonal_, longest_side_; // of the scene, metres
@@ -48,4 +51,5 @@ private:
     InterpolateStage interpolate_;
     GlossyStage glossy_;
     CausticsStage caustics_;
+    ViewsStage views_;
 };

@@ -51,6 +51,11 @@ Status checkOptions(const PlayerOptions& options)
     }
     if (options.frame_count > 0 && options.sample_count > 0)
         return Error{ExitCode::kUsage, "--frames and --spp both say how much to render; give one"};
+    const auto settings = makeSettings(options.preset.empty() ? "default" : options.preset, options.assignments);
+    if (!settings)
+        return settings.error();
+    if (options.mode != Mode::kGi && settings->view != gpu::kViewNone)
+        return Error{ExitCode::kUsage, "views show the inside of mode gi; choose --mode gi or leave the view out"};
     return Success{};
 }
 } // namespace
@@ -62,7 +67,7 @@ int main(int argc, char** argv)
     app.footer("Settings (--set name=value):\n" + describeKnobs() +
                "Exit codes: 0 ok, 1 usage, 2 I/O, 3 invalid package, 4 no suitable device or out of memory, 5 unsupported.");
     PlayerOptions options;
-    std::string size = "1280x720", mode = "gi";
+    std::string size = "1280x720", mode = "gi", view;
     bool list_devices = false;
     app.add_option("package", options.package, "the .lumi file");
     app.add_flag("--headless", options.headless, "render without a window");
@@ -78,6 +83,7 @@ int main(int argc, char** argv)
     app.add_flag("--list-devices", list_devices, "list Vulkan devices and what each one lacks");
     app.add_option("--stats", options.stats, "write times and counts as JSON");
     app.add_option("--preset", options.preset, "preview, default or high; without it preview on a CPU device, else default");
+    app.add_option("--view", view, "show a stage of mode gi in place of the picture; the same as --set view=NAME");
     app.add_option("--set", options.assignments, "change a setting, name=value; may be repeated")
         ->allow_extra_args(false); // else it takes the package after it
     app.add_flag("--validate", options.validation, "run with the Vulkan validation layers; a message stops the program");
@@ -96,9 +102,9 @@ int main(int argc, char** argv)
     if (options.package.empty())
         return fail("lumicut-play", {ExitCode::kUsage, "a package is needed: lumicut-play scene.lumi (see --help)"});
     options.mode = mode == "gi" ? Mode::kGi : mode == "reference" ? Mode::kReference : Mode::kDirect;
+    if (!view.empty())
+        options.assignments.push_back("view=" + view);
     Status status = parseSize(size, options);
-    if (const auto settings = makeSettings(options.preset.empty() ? "default" : options.preset, options.assignments); status && !settings)
-        status = settings.error();
     if (status)
         status = checkOptions(options);
     if (!status)

@@ -55,7 +55,8 @@ void Renderer::record(Recorder& rec, const Camera& camera, const Settings& setti
         resolve_.restart(rec);
     last_camera_ = view;
     view.sample_count = sample_count;
-    view.first_sample = resolve_.sampleCount();
+    const bool repeat = gi_ && showsOneFrame(settings.view); // a debug view stands still
+    view.first_sample = repeat ? 0 : resolve_.sampleCount();
     const uint32_t pixel_count = width_ * height_;
 
     if (reference_)
@@ -83,6 +84,8 @@ void Renderer::record(Recorder& rec, const Camera& camera, const Settings& setti
 
 const Buffer& Renderer::display(Recorder& rec, const Settings& settings, bool bgra)
 {
+    if (gi_ && isDisplayReferred(settings.view))
+        return resolve_.display(rec, width_ * height_, 0, Tonemap::kSrgb, bgra);
     return resolve_.display(rec, width_ * height_, settings.exposure, Tonemap(settings.tonemap), bgra);
 }
 

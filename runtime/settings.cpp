@@ -1,6 +1,7 @@
 #include "runtime/settings.h"
 
 #include "shaders/lib/terms.h"
+#include "shaders/views/views.h"
 
 #include <fmt/format.h>
 
@@ -36,6 +37,8 @@ constexpr std::array kKnobs{
     Knob{"term", &Settings::term, gpu::kTermAll, gpu::kTermGlossy, "",
          "light paths shown in modes gi and reference; the others sum to all",
          "all,emission,direct,caustics,indirect,glossy"},
+    Knob{"view", &Settings::view, gpu::kViewNone, gpu::kViewNonFinite, "", "what mode gi shows in place of the picture",
+         "none,normals,positions,samples,clusters,budget,photons,tree,cut,irradiance,nonfinite"},
     Knob{"exposure", &Settings::exposure, -20, 20, "stops", "brightness of the display; EXR files stay linear"},
     Knob{"tonemap", &Settings::tonemap, 0, 2, "", "display transform", "srgb,aces,agx"},
 };

@@ -30,6 +30,7 @@ struct Settings
     float caustic_radius = 0.05f; // of the scene's diagonal
     uint32_t reference_depth = 64;
     uint32_t term = 0; // gpu::kTerm*
+    uint32_t view = 0; // gpu::kView*
     float exposure = 0;
     uint32_t tonemap = 2; // Tonemap
 };

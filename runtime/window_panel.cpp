@@ -76,7 +76,7 @@ bool editKnobs(Settings& settings)
     for (const Knob& knob : knobs())
     {
         const bool changed = std::visit([&](auto member) { return editKnob(knob, settings.*member); }, knob.member);
-        restart |= changed && !isDisplayKnob(knob);
+        restart |= changed && (!isDisplayKnob(knob) || settings.view != gpu::kViewNone); // views hold what is behind them
         if (ImGui::IsItemHovered())
             ImGui::SetTooltip("%s", std::string(knob.help).c_str());
     }

@@ -70,5 +70,5 @@ CutStage::Output CutStage::record(Recorder& rec, const RayStage& rays, const Pho
     tree_.record(rec, spheres_, size_);
     rec.runIndirect(reorder_, size_, 0, NoParams{},
                     {{"Size", size_}, {"Ids", ids_}, {"Order", tree_.order()}, {"Finals", finals_}, {"Nodes", nodes_}});
-    return {.size = size_, .nodes = nodes_, .tree = tree_};
+    return output();
 }

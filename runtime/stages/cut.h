@@ -26,6 +26,8 @@ public:
         const Tree& tree;    // over their supports
     };
     Output record(Recorder& rec, const RayStage& rays, const PhotonTreeStage::Output& map, const Input& in) const;
+    /// What the last record() left.
+    Output output() const { return {.size = size_, .nodes = nodes_, .tree = tree_}; }
 
 private:
     Kernel summarise_, level_mean_, threshold_kernel_, coarse_, select_, refine_, collect_, reorder_;

@@ -13,7 +13,7 @@ void InterpolateStage::record(Recorder& rec, const SamplesStage::Output& samples
     rec.runIndirect(reorder_, samples.size, 0, NoParams{},
                     {{"Size", samples.size}, {"Order", tree_.order()}, {"Samples", samples.samples}, {"Sorted", sorted_}});
     rec.clear(statistics_);
-    const gpu::InterpolateParams params{.point_count = in.point_count, .alpha = in.alpha, .radius = in.radius};
+    const gpu::InterpolateParams params{.point_count = in.point_count, .alpha = in.alpha, .radius = in.radius, .white = in.white};
     rec.run(apply_, in.point_count, params,
             {{"Size", samples.size}, {"TreeNodes", tree_.nodes()}, {"Samples", sorted_}, {"Points", in.points}, {"Radiance", in.radiance},
              {"Statistics", statistics_}});

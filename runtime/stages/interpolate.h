@@ -15,6 +15,7 @@ public:
         uint32_t point_count;
         float alpha;  // of Eq. 2, per metre, where no sample is accepted
         float radius; // metres: how far a sample may be there
+        bool white = false; // as if every surface reflected all of it and nothing else had been: a debug view
     };
     void record(Recorder& rec, const SamplesStage::Output& samples, const Input& in) const;
 

@@ -20,5 +20,5 @@ PhotonTreeStage::Output PhotonTreeStage::record(Recorder& rec, const RayStage& r
     tree_.record(rec, spheres_, size_);
     rec.runIndirect(reorder_, size_, 0, NoParams{},
                     {{"Size", size_}, {"Slots", slots_}, {"Order", tree_.order()}, {"Photons", in.photons}, {"Sorted", sorted_}});
-    return {.size = size_, .photons = sorted_, .tree = tree_};
+    return output();
 }

@@ -16,6 +16,8 @@ public:
         const Tree& tree;
     };
     Output record(Recorder& rec, const RayStage& rays, const PhotonStage::Output& in) const;
+    /// What the last record() left.
+    Output output() const { return {.size = size_, .photons = sorted_, .tree = tree_}; }
 
 private:
     Kernel collect_, reorder_;

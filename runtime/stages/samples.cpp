@@ -104,5 +104,5 @@ SamplesStage::Output SamplesStage::record(Recorder& rec, const RayStage& rays, c
     rec.runIndirect(place_, size_, 0, clustering,
                     {{"Size", size_}, {"Occupied", occupied_}, {"Sums", sums_}, {"Points", points_}, {"Samples", samples_},
                      {"Spheres", spheres_}});
-    return {.size = size_, .samples = samples_, .spheres = spheres_};
+    return output();
 }

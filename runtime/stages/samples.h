@@ -33,6 +33,17 @@ public:
         const Buffer& spheres; // vec4[size.count]: their positions and supports
     };
     Output record(Recorder& rec, const RayStage& rays, const Input& in) const;
+    /// What the last record() left.
+    Output output() const { return {.size = size_, .samples = samples_, .spheres = spheres_}; }
+
+    struct Quadtree // how the samples came about
+    {
+        uint32_t stride; // pixels between neighbouring points, each way
+        uint32_t levels; // points are level 0
+        const Buffer& budgets; // uint[], by node as samples/quadtree.glsl orders them: samples that it was to get
+        const Buffer& owners;  // uvec2[4^levels], by point in Z-order: its cluster or kNone, bits of its eps
+    };
+    Quadtree quadtree() const { return {.stride = stride_, .levels = levels_, .budgets = budgets_, .owners = owners_}; }
 
     /// The samples of the last record(); waits for the device.
     std::vector<gpu::Sample> download(const Device& device) const

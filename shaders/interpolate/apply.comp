@@ -87,6 +87,8 @@ void main()
     Surface s = surfaceAt(point.slot, point.barycentrics, point.direction);
     Bsdf b = bsdfAt(materialAt(s), s.front);
     vec3 reflectance = point.throughput * diffuseReflectance(b, max(0.0, -dot(s.normal, point.direction)));
+    if (params.white != 0u)
+        reflectance = mix(vec3(0.0), vec3(1.0), notEqual(reflectance, vec3(0.0)));
     if (reflectance != vec3(0.0))
         radiance[pixel] += reflectance * kInvPi * interpolatedIrradiance(s.position, s.smooth_normal);
 }

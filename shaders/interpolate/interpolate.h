@@ -10,8 +10,9 @@ struct InterpolateParams
     uint point_count;
     float alpha;  // of Eq. 2, per metre, where no sample is accepted
     float radius; // metres: how far a sample may be there
+    uint white;   // 1: as if every surface reflected all of it
 };
-GPU_SIZE(InterpolateParams, 12);
+GPU_SIZE(InterpolateParams, 16);
 
 struct InterpolateStatistics
 {

@@ -6,8 +6,8 @@
 #include "shaders/lib/math.glsl"
 #include "shaders/lib/tree.glsl"
 
-/// Irradiance of the nearest cut node that faces the same way, within sqrt(radius2); 0 where there is none.
-vec3 nearestCutIrradiance(vec3 x, vec3 n, float radius2)
+/// The nearest cut node that faces the same way, within sqrt(radius2); kNone where there is none.
+uint nearestCutNode(vec3 x, vec3 n, float radius2)
 {
     uint nearest = kNone;
     uint first, end;
@@ -23,6 +23,13 @@ vec3 nearestCutIrradiance(vec3 x, vec3 n, float radius2)
                 nearest = i;
             }
         }
+    return nearest;
+}
+
+/// Its irradiance; 0 where there is none.
+vec3 nearestCutIrradiance(vec3 x, vec3 n, float radius2)
+{
+    uint nearest = nearestCutNode(x, n, radius2);
     if (nearest == kNone)
         return vec3(0.0);
     return cut_nodes[nearest].irradiance;

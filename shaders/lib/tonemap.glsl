@@ -1,6 +1,7 @@
 // Display transforms: linear Rec. 709 radiance to display-referred, still linear RGB in [0,1]. Functions only.
 #ifndef LIB_TONEMAP_GLSL
 #define LIB_TONEMAP_GLSL
+#include "shaders/resolve/resolve.h"
 
 vec3 toSrgb(vec3 linear)
 {
@@ -27,6 +28,16 @@ vec3 tonemapAgx(vec3 rgb)
     vec3 x2 = x * x, x4 = x2 * x2;
     vec3 curve = 15.5 * x4 * x2 - 40.14 * x4 * x + 31.96 * x4 - 6.868 * x2 * x + 0.4298 * x2 + 0.1191 * x - 0.00232;
     return clamp(pow(max(inverse(kInset) * curve, 0.0), vec3(2.2)), 0.0, 1.0);
+}
+
+/// @param curve kTonemap*
+vec3 displayTransform(vec3 rgb, uint curve)
+{
+    if (curve == kTonemapAces)
+        return tonemapAces(rgb);
+    if (curve == kTonemapAgx)
+        return tonemapAgx(rgb);
+    return clamp(rgb, 0.0, 1.0);
 }
 
 #endif

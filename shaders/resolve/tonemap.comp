@@ -2,7 +2,6 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "shaders/lib/tonemap.glsl"
-#include "shaders/resolve/resolve.h"
 
 // Exposure and display transform: radiance sums to 8-bit sRGB pixels. One thread per pixel.
 
@@ -17,12 +16,7 @@ void main()
     uint pixel = gl_GlobalInvocationID.x;
     if (pixel >= params.pixel_count)
         return;
-    vec3 rgb = params.scale * sum[pixel];
-    if (params.curve == kTonemapAces)
-        rgb = tonemapAces(rgb);
-    else if (params.curve == kTonemapAgx)
-        rgb = tonemapAgx(rgb);
-    rgb = toSrgb(rgb);
+    vec3 rgb = toSrgb(displayTransform(params.scale * sum[pixel], params.curve));
     if (params.swap_red_blue != 0u)
         rgb = rgb.bgr;
     pixels[pixel] = packUnorm4x8(vec4(rgb, 1.0));

@@ -24,6 +24,8 @@ void main()
         return;
     uint node = levelOffset(params.level, params.levels) + i;
     uint budget = params.level == params.levels ? min(params.budget, nodes[node].count) : budgets[node];
+    if (params.level == params.levels)
+        budgets[node] = budget;
     uint below = params.level > 1u ? levelOffset(params.level - 1u, params.levels) : 0u;
 
     uint counts[4];

@@ -12,14 +12,6 @@ constexpr double kAlbedo = 0.6;
 constexpr gpu::vec3 kLow{-1, 0, -1.5f}, kHigh{1, 1.5f, 1.5f};
 constexpr uint32_t kRays = 64;
 
-/// A cut made by hand.
-struct Cut
-{
-    std::optional<Tree> tree;
-    Buffer size, nodes;
-    std::optional<CutStage::Output> gpu;
-};
-
 /// Samples made by hand.
 struct Samples
 {
@@ -64,25 +56,6 @@ protected:
                         nodes.push_back(node(center, normal, irradiance(normal)));
                 }
         return nodes;
-    }
-
-    static std::unique_ptr<Cut> cutOf(const SceneGpu& scene, const std::vector<gpu::CutNode>& nodes)
-    {
-        const uint32_t count = uint32_t(nodes.size());
-        std::vector<gpu::vec4> spheres;
-        for (const gpu::CutNode& n : nodes)
-            spheres.push_back({n.center.x, n.center.y, n.center.z, n.support});
-        auto cut = std::make_unique<Cut>();
-        cut->tree.emplace(device(), "test.cut_tree", std::max(count, 1u));
-        cut->size = sizeBuffer(count);
-        const Buffer on_gpu = upload("test.spheres", spheres);
-        submit(scene, [&](Recorder& rec) { cut->tree->record(rec, on_gpu, cut->size); });
-        std::vector<gpu::CutNode> sorted;
-        for (const uint32_t i : contents<uint32_t>(cut->tree->order(), count))
-            sorted.push_back(nodes[i]);
-        cut->nodes = upload("test.cut_nodes", sorted);
-        cut->gpu.emplace(CutStage::Output{.size = cut->size, .nodes = cut->nodes, .tree = *cut->tree});
-        return cut;
     }
 
     static gpu::Sample sampleAt(gpu::vec3 position, Double3 normal)

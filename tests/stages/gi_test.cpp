@@ -40,6 +40,24 @@ std::unique_ptr<PhotonMap> GiTest::mapOf(const SceneGpu& scene, const std::vecto
     return map;
 }
 
+std::unique_ptr<Cut> GiTest::cutOf(const SceneGpu& scene, const std::vector<gpu::CutNode>& nodes)
+{
+    const uint32_t count = uint32_t(nodes.size());
+    std::vector<gpu::vec4> spheres;
+    for (const gpu::CutNode& n : nodes)
+        spheres.push_back({n.center.x, n.center.y, n.center.z, n.support});
+    auto cut = std::make_unique<Cut>();
+    cut->tree.emplace(device(), "test.cut_tree", std::max(count, 1u));
+    cut->size = sizeBuffer(count);
+    const Buffer on_gpu = upload("test.spheres", spheres);
+    submit(scene, [&](Recorder& rec) { cut->tree->record(rec, on_gpu, cut->size); });
+    for (const uint32_t i : contents<uint32_t>(cut->tree->order(), count))
+        cut->sorted.push_back(nodes[i]);
+    cut->nodes = upload("test.cut_nodes", cut->sorted);
+    cut->gpu.emplace(CutStage::Output{.size = cut->size, .nodes = cut->nodes, .tree = *cut->tree});
+    return cut;
+}
+
 std::vector<gpu::Photon> GiTest::emit(const SceneGpu& scene, PhotonKind kind, const PhotonStage::Input& in)
 {
     const RayStage rays(device(), scene);

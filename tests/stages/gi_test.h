@@ -31,6 +31,15 @@ struct PhotonMap
     TreeData tree;
 };
 
+/// A cut made by hand.
+struct Cut
+{
+    std::optional<Tree> tree;
+    Buffer size, nodes;
+    std::optional<CutStage::Output> gpu;
+    std::vector<gpu::CutNode> sorted; // as the tree
+};
+
 /// What density estimation may give: the kernel finds the distance of the k-th photon by a histogram, to one of its
 /// bins.
 struct DensityBounds
@@ -65,6 +74,8 @@ protected:
 
     /// The map of exactly these photons.
     static std::unique_ptr<PhotonMap> mapOf(const SceneGpu& scene, const std::vector<gpu::Photon>& photons);
+    /// The cut of exactly these nodes.
+    static std::unique_ptr<Cut> cutOf(const SceneGpu& scene, const std::vector<gpu::CutNode>& nodes);
     /// The photons that a global or caustic emission stores.
     static std::vector<gpu::Photon> emit(const SceneGpu& scene, PhotonKind kind, const PhotonStage::Input& in);
 

@@ -162,6 +162,9 @@ TEST_F(Player, RefusesArgumentsThatMakeNoSense)
         expectPlayRefused(scene + count + output, 1, count.substr(0, count.find(' ')));
     for (const std::string setting : {"nonsense=1", "exposure", "exposure=bright", "direct_samples=0", "tonemap=film"})
         expectPlayRefused(scene + "--set " + setting + output, 1, "--set " + setting);
+    expectPlayRefused(scene + "--mode gi --view nothing" + output, 1, "none,normals,");
+    for (const std::string view : {"--view samples", "--set view=samples"})
+        expectPlayRefused(scene + "--mode direct " + view + output, 1, "--mode gi");
     expectPlayRefused(scene + "--camera nowhere" + output, 1, "eye (0)");
     expectPlayRefused(scene + "--camera 1" + output, 1, "eye (0)");
     expectPlayRefused(scene + "--output " + path("out.jpg"), 1, ".exr or .png");

@@ -1,0 +1,69 @@
+#!/usr/bin/env bash
+# Pictures of what happens within one frame of the atrium in mode gi, as README.md shows them, and of what the path-traced
+# reference makes of the same view.
+#   tools/pictures.sh [OPTION...] [OUTDIR]    OUTDIR: where the PNG files go; default tools/pictures
+#     --scene SCENE        cornell, caustics or atrium; default atrium
+#     --size WxH           default 480x270
+#     --frames N           of the final picture and of the terms; default 32
+#     --spp N              samples a pixel of the reference; default 512
+#     --device NAME        as lumicut-play takes it
+#     --preset NAME        of mode gi; default default
+#     --set NAME=VALUE     a setting of mode gi; repeatable
+#     --only NAME,...      these pictures alone
+# Packages are kept in build/pictures. LUMICUT_BIN=FOLDER uses the programs there instead of building.
+set -euo pipefail
+. "$(dirname "${BASH_SOURCE[0]}")/bench/scenes.sh"
+
+scene=atrium size=480x270 frames=32 spp=512 preset=default only= pictures=$root/tools/pictures out=$root/build/pictures
+device=() settings=()
+while (($#)); do
+    case $1 in
+    --help | -h) usage_of "${BASH_SOURCE[0]}" && exit ;;
+    --scene | --size | --frames | --spp | --device | --preset | --set | --only)
+        need_value "$1" $#
+        case $1 in
+        --scene) scene=$2 ;;
+        --size) size=$2 ;;
+        --frames) frames=$2 ;;
+        --spp) spp=$2 ;;
+        --device) device=(--device "$2") ;;
+        --preset) preset=$2 ;;
+        --set) settings+=(--set "$2") ;;
+        --only) only=$2 ;;
+        esac
+        shift
+        ;;
+    -*) fail 1 "unknown option $1 (see --help)" ;;
+    *) pictures=$1 ;;
+    esac
+    shift
+done
+mkdir -p "$out" "$pictures"
+build_programs
+package=$(package_of "$scene")
+
+# picture NAME OPTION...: plays the package into NAME.png.
+picture() {
+    local name=$1
+    shift
+    [[ -z $only || ,$only, == *,$name,* ]] || return 0
+    echo "pictures.sh: rendering $name.png" >&2
+    "$bin/lumicut-play" "$package" --headless --size "$size" ${device[@]+"${device[@]}"} "$@" --output "$pictures/$name.png" \
+        2>"$out/$name.log" || { cat "$out/$name.log" >&2 && fail 4 "$name.png could not be rendered"; }
+    echo "$pictures/$name.png"
+}
+gi() {
+    picture "$@" --mode gi --preset "$preset" ${settings[@]+"${settings[@]}"}
+}
+
+# A view shows one frame: more shadow rays make the picture behind it smooth.
+for view in normals positions budget samples clusters photons tree cut; do
+    gi "$view" --view "$view" --set direct_samples=16
+done
+gi irradiance --view irradiance
+for term in direct caustics indirect glossy; do
+    gi "$term" --set "term=$term" --frames "$frames"
+done
+gi first --frames 1
+gi final --frames "$frames"
+picture reference --mode reference --spp "$spp"
