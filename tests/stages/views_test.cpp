@@ -405,7 +405,7 @@ TEST_F(Views, ShowTheIrradianceThatIndirectLightIsMadeOf)
     {
         const ShadingPoints::Point& p = points_->points[pixel];
         const double reflectance = p.exists ? p.diffuse.x * p.throughput.x : 0;
-        EXPECT_EQ(irradiance.pixels[pixel].x != 0, reflectance != 0);
+        EXPECT_TRUE(reflectance != 0 || irradiance.pixels[pixel].x == 0);
         EXPECT_NEAR(indirect.pixels[pixel].x, reflectance * irradiance.pixels[pixel].x,
                     1e-5 * indirect.pixels[pixel].x);
         brightest = std::max(brightest, double(irradiance.pixels[pixel].x));
