@@ -9,6 +9,8 @@ namespace
 {
 constexpr uint32_t kCausticBounces = 2; // photons a caustic path may leave: one, and another behind a smooth layer
 
+constexpr float kSearchRadius = 0.1f; // of the scene's diagonal: how far the nearest sample or cut node may be
+
 /// Progressive photon mapping: r_n^2 / r_0^2 = prod (i + 2/3) / (i + 1) over the n frames before (Hachisuka et al. 2008;
 /// Knaus & Zwicker 2011), so that noise and bias vanish together.
 float shrunkRadius(float radius, uint32_t frame)
@@ -55,7 +57,8 @@ Status GlobalIllumination::checkCounts(uint64_t range, const Settings& settings)
 GlobalIllumination::GlobalIllumination(const Device& device, const SceneGpu& scene, const Settings& settings, uint32_t width,
                                        uint32_t height)
     : width_(width), height_(height), diagonal_(0), longest_side_(0), has_specular_(scene.hasFeature(gpu::kFeatureSpecular)),
-      has_caustic_targets_(scene.info().caustic_target_count > 0), primary_(device, scene, width * height), direct_(device, scene, width * height),
+      has_caustic_targets_(scene.info().caustic_target_count > 0),
+      has_mirrors_(has_caustic_targets_ || scene.hasFeature(gpu::kFeatureTransmission | gpu::kFeatureThin)), primary_(device, scene, width * height), direct_(device, scene, width * height),
       photons_(device, scene, PhotonKind::kGlobal, settings.photon_count, settings.photon_bounces),
       caustic_photons_(device, scene, PhotonKind::kCaustic, settings.caustic_photons, kCausticBounces),
       photon_tree_(device, "photon_tree", settings.photon_count * settings.photon_bounces),
@@ -104,11 +107,11 @@ const Buffer& GlobalIllumination::record(Recorder& rec, const RayStage& rays, co
     return frame.radiance;
 }
 
-/// Delta events that photons and gathering rays follow: each costs passes over mostly empty queues. Without mirrors and
-/// glass there are only faint smooth layers over something diffuse, whose second reflections do not matter.
+/// Delta events that photons and gathering rays follow: each costs a pass over a mostly empty queue. Without mirrors and
+/// glass there are only smooth layers over something diffuse, whose third reflections are too faint to matter.
 uint32_t GlobalIllumination::chainDepth(const Settings& settings) const
 {
-    return has_caustic_targets_ ? settings.specular_depth : std::min(settings.specular_depth, 1u);
+    return has_mirrors_ ? settings.specular_depth : std::min(settings.specular_depth, 2u);
 }
 
 void GlobalIllumination::recordDirect(const Frame& frame) const
@@ -155,7 +158,7 @@ void GlobalIllumination::recordIndirect(const Frame& frame, const PhotonTreeStag
 {
     const Settings& settings = frame.settings;
     const float alpha = settings.sample_alpha * 2 / longest_side_;
-    const float radius = settings.density_radius * diagonal_;
+    const float radius = kSearchRadius * diagonal_;
     const auto samples = [&]
     {
         const auto scope = frame.rec.scope("samples");
@@ -165,6 +168,7 @@ void GlobalIllumination::recordIndirect(const Frame& frame, const PhotonTreeStag
                                 .budget = settings.sample_count,
                                 .iterations = settings.sample_iterations,
                                 .alpha = alpha,
+                                .reach = settings.sample_reach,
                                 .seed = frame.seed});
     }();
     {
@@ -174,7 +178,7 @@ void GlobalIllumination::recordIndirect(const Frame& frame, const PhotonTreeStag
                         .ray_count = settings.gather_rays,
                         .specular_depth = chainDepth(settings),
                         .photon_count = settings.density_photons,
-                        .radius = radius,
+                        .radius = settings.cut_mode == gpu::kCutKnn ? settings.density_radius * diagonal_ : radius,
                         .seed = frame.seed});
     }
     const auto scope = frame.rec.scope("interpolate");
@@ -203,11 +207,13 @@ void GlobalIllumination::recordCaustics(const Frame& frame) const
 {
     const Settings& settings = frame.settings;
     const auto scope = frame.rec.scope("caustics");
+    // Without mirrors and glass to aim at there are only the faint reflections of smooth layers: few photons will do.
+    const uint32_t path_count = has_caustic_targets_ ? settings.caustic_photons : settings.caustic_photons / 8;
     const auto stored = caustic_photons_.record(frame.rec, frame.rays,
-                                                {.path_count = settings.caustic_photons,
+                                                {.path_count = path_count,
                                                  .bounce_limit = kCausticBounces,
                                                  .specular_depth = chainDepth(settings),
-                                                 .first_path = frame.index * settings.caustic_photons,
+                                                 .first_path = frame.index * path_count,
                                                  .seed = frame.camera.seed + gpu::kTermCaustics});
     const auto map = caustic_tree_.record(frame.rec, frame.rays, stored);
     caustics_.record(frame.rec, map,

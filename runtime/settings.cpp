@@ -28,6 +28,7 @@ constexpr std::array kKnobs{
     Knob{"samples.count", &Settings::sample_count, 16, 65536, "", "irradiance samples a frame"},
     Knob{"samples.iterations", &Settings::sample_iterations, 0, 16, "", "iterations of k-means"},
     Knob{"samples.alpha", &Settings::sample_alpha, 0.01, 1000, "per half of the scene's longest side", "weight of distance against normals"},
+    Knob{"samples.reach", &Settings::sample_reach, 2, 10, "of its cluster's mean radius", "how far a sample speaks for"},
     Knob{"gather.rays", &Settings::gather_rays, 1, 4096, "", "rays an irradiance sample gathers with"},
     Knob{"caustics.photons", &Settings::caustic_photons, 256, 4e6, "", "photon paths aimed at specular objects a frame"},
     Knob{"caustics.nearest", &Settings::caustic_density_photons, 8, 1024, "", "photons of a caustic's density estimate"},
@@ -88,6 +89,7 @@ Result<Settings> presetSettings(std::string_view name)
         settings.cut_iterations = 1;
         settings.sample_count = 384;
         settings.sample_iterations = 1;
+        settings.sample_reach = 3.5f;
         settings.gather_rays = 32;
         settings.caustic_photons = 4000;
         settings.caustic_density_photons = 24;

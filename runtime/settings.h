@@ -17,12 +17,13 @@ struct Settings
     uint32_t density_photons = 25;
     float density_radius = 0.03f; // of the scene's diagonal
     uint32_t cut_mode = 3; // CutMode
-    uint32_t cut_iterations = 4;
+    uint32_t cut_iterations = 3;
     float cut_difference = 0.2f;
     uint32_t samples_mode = 2; // SamplesMode
     uint32_t sample_count = 4096;
     uint32_t sample_iterations = 3;
     float sample_alpha = 10;
+    float sample_reach = 5;
     uint32_t gather_rays = 256;
     uint32_t caustic_photons = 100000; // paths
     uint32_t caustic_density_photons = 200;

@@ -89,7 +89,7 @@ SamplesStage::Output SamplesStage::record(Recorder& rec, const RayStage& rays, c
                      {"Spheres", cluster_spheres_}, {"Sums", sums_}});
 
     const gpu::ClusterParams clustering{
-        .point_count = point_count_, .alpha = in.alpha, .fixed_scale = 4294967040.0f / float(point_count_)};
+        .point_count = point_count_, .alpha = in.alpha, .fixed_scale = 4294967040.0f / float(point_count_), .reach = in.reach};
     for (uint32_t i = 0; in.mode == SamplesMode::kKmeans && i < in.iterations; ++i)
     {
         assign(rec, clustering);

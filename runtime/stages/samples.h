@@ -23,6 +23,7 @@ public:
         uint32_t budget;     // samples, <= max_samples
         uint32_t iterations; // of k-means
         float alpha;         // of Eq. 2, per metre
+        float reach;         // of a sample, in mean distances of its cluster's points to their centre
         uint32_t seed;
     };
     struct Output

@@ -18,8 +18,7 @@ layout(set = 1, binding = 4, scalar) writeonly buffer Samples { Sample samples[]
 layout(set = 1, binding = 5, scalar) writeonly buffer Spheres { vec4 spheres[]; };
 
 // A round cluster of radius rho has a mean distance of 2/3 rho; its neighbours lie at 2 rho, the next ones at 3.5 and 4 rho.
-// Reaching 3.5 rho it shares every place with about ten others.
-const float kSupportDistances = 5.0;
+// With a reach of 5, that is 3.3 rho, every place shares about ten samples.
 
 void main()
 {
@@ -31,7 +30,7 @@ void main()
     float diagonal = length(scene.bounds_max - scene.bounds_min);
     vec3 extent = scene.bounds_max - scene.bounds_min;
     float distance_ = float(s.distance) / (params.fixed_scale * float(s.count)) * maxComponent(extent);
-    float support = clamp(kSupportDistances * distance_, 1e-3 * diagonal, 0.1 * diagonal);
+    float support = clamp(params.reach * distance_, 1e-3 * diagonal, 0.1 * diagonal);
     samples[i] = Sample(point.position, point.normal, vec3(0.0), support, 0.0, point.pixel);
     spheres[i] = vec4(point.position, support);
 }

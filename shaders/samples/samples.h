@@ -85,8 +85,9 @@ struct ClusterParams
     uint point_count;
     float alpha;
     float fixed_scale;
+    float reach; // support of a sample, in mean distances of its cluster's points to their centre
 };
-GPU_SIZE(ClusterParams, 12);
+GPU_SIZE(ClusterParams, 16);
 
 GPU_NAMESPACE_END
 #endif

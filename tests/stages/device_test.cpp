@@ -146,8 +146,9 @@ TEST(ApplySetting, ReachesEveryKnobFromItsLeastToItsMost)
                 continue;
             }
             ASSERT_TRUE(status) << status.error().message;
-            EXPECT_EQ(std::visit([&](auto member) { return double(settings.*member); }, knob.member), value)
-                << knob.name;
+            std::visit([&](auto member)
+                       { EXPECT_EQ(settings.*member, std::remove_reference_t<decltype(settings.*member)>(value)) << knob.name; },
+                       knob.member);
         }
     Settings settings;
     for (const auto& [name, value] : {std::pair("srgb", 0u), std::pair("aces", 1u), std::pair("agx", 2u)})

@@ -75,6 +75,7 @@ protected:
                                                .budget = budget,
                                                .iterations = iterations,
                                                .alpha = float(alpha_),
+                                         .reach = 5,
                                                .seed = seed}));
                });
         return contents<gpu::Sample>(out->samples, countOf(out->size));
@@ -219,6 +220,7 @@ TEST_F(SamplesTest, AreNoMoreThanThereAreShadingPoints)
                                          .budget = kMostSamples,
                                          .iterations = 0,
                                          .alpha = float(alpha_),
+                                         .reach = 5,
                                          .seed = 1}));
            });
     const auto all = contents<gpu::Sample>(out->samples, countOf(out->size));
