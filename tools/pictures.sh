@@ -57,13 +57,10 @@ gi() {
 }
 
 # A view shows one frame: more shadow rays make the picture behind it smooth.
-for view in normals positions budget samples clusters photons tree cut; do
+for view in normals budget samples clusters photons tree cut; do
     gi "$view" --view "$view" --set direct_samples=16
 done
-gi irradiance --view irradiance
-for term in direct caustics indirect glossy; do
-    gi "$term" --set "term=$term" --frames "$frames"
-done
-gi first --frames 1
+gi irradiance --view irradiance --frames "$frames"
+gi caustics --set term=caustics --set exposure=4 --frames "$frames"
 gi final --frames "$frames"
 picture reference --mode reference --spp "$spp"

@@ -19,12 +19,12 @@ void main()
         return;
     ivec2 picture = ivec2(params.width, params.height);
     ivec2 center = ivec2(samples[i].pixel % params.width, samples[i].pixel / params.width);
-    int radius = (picture.y + 150) / 300;
-    for (int y = -radius; y <= radius; ++y)
-        for (int x = -radius; x <= radius; ++x)
+    int side = max(1, picture.y / 135);
+    for (int y = 0; y < side; ++y)
+        for (int x = 0; x < side; ++x)
         {
-            ivec2 at = center + ivec2(x, y);
-            if (x * x + y * y <= radius * radius && all(greaterThanEqual(at, ivec2(0))) && all(lessThan(at, picture)))
+            ivec2 at = center + ivec2(x, y) - side / 2;
+            if (all(greaterThanEqual(at, ivec2(0))) && all(lessThan(at, picture)))
                 atomicMax(marks[at.y * picture.x + at.x], i + 1u);
         }
 }
