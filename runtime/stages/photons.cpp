@@ -2,7 +2,7 @@
 
 namespace
 {
-// Caustic photons not aimed at a specular object: they keep the map unbiased for surfaces the compiler does not aim at.
+// Of caustic photons; the others keep the map unbiased for the specular surfaces that the compiler does not aim at.
 constexpr float kAimedFraction = 0.9f;
 } // namespace
 

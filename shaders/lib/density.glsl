@@ -72,8 +72,8 @@ struct DensityEstimate
 };
 
 /// Irradiance at x from the `wanted` nearest photons within sqrt(radius2), weighted by (1 - d^2/r^2)^2, whose integral
-/// over the disc is pi r^2 / 3 (Silverman 1986). However few
-/// there are: leaving out those of a dim place would take its light away. @param guess2 of their distance
+/// over the disc is pi r^2 / 3 (Silverman 1986). However few there are: leaving out those of a dim place would take its
+/// light away. @param guess2 of their squared distance
 DensityEstimate estimateIrradiance(vec3 x, vec3 n, uint photon_count, uint wanted, float radius2, float guess2)
 {
     uint found;

@@ -134,16 +134,7 @@ Emission emitTriangle(Light light, float aim, bool aimed, uint target, vec2 u, v
     }
     if (cosine <= 0.0)
         return kNoEmission;
-    vec3 emission = light.emission;
-    if ((hasFeature(kFeatureEmissiveMaps) || kSceneHasAlpha) && light.material != kNone)
-    {
-        uvec3 vertex = loadTriangle(light.triangle).vertices;
-        vec2 uv0 = interpolate(weights, loadVertex(vertex.x).uv0, loadVertex(vertex.y).uv0, loadVertex(vertex.z).uv0);
-        vec2 uv1 = interpolate(weights, loadVertex(vertex.x).uv1, loadVertex(vertex.y).uv1, loadVertex(vertex.z).uv1);
-        emission = surfaceEmission(light.material, uv0, uv1);
-        if (kSceneHasAlpha)
-            emission *= surfaceCoverage(light.material, vertex, weights);
-    }
+    vec3 emission = triangleEmission(light, weights);
     float pdf = (1.0 - aim) * cosine * kInvPi * (two_sided ? 0.5 : 1.0);
     if (aim > 0.0)
         pdf += aim * aimedDirectionPdf(position, direction);

@@ -91,6 +91,18 @@ LightSample samplePunctual(Light light, vec3 point)
     return LightSample(wi, distance, light.p0, intensity / (distance2 * light.pmf), 0.0);
 }
 
+/// Radiance that a triangle light gives at a point of it, texture and alpha applied.
+vec3 triangleEmission(Light light, vec3 weights)
+{
+    if ((!hasFeature(kFeatureEmissiveMaps) && !kSceneHasAlpha) || light.material == kNone)
+        return light.emission;
+    uvec3 v = loadTriangle(light.triangle).vertices;
+    vec2 uv0 = interpolate(weights, loadVertex(v.x).uv0, loadVertex(v.y).uv0, loadVertex(v.z).uv0);
+    vec2 uv1 = interpolate(weights, loadVertex(v.x).uv1, loadVertex(v.y).uv1, loadVertex(v.z).uv1);
+    vec3 emission = surfaceEmission(light.material, uv0, uv1);
+    return kSceneHasAlpha ? emission * surfaceCoverage(light.material, v, weights) : emission;
+}
+
 LightSample sampleTriangle(Light light, uint index, vec3 point, vec2 u)
 {
     float r = sqrt(u.x);
@@ -106,16 +118,7 @@ LightSample sampleTriangle(Light light, uint index, vec3 point, vec2 u)
         cosine = abs(cosine);
     if (cosine <= 0.0)
         return kNoLight;
-    vec3 emission = light.emission;
-    if ((hasFeature(kFeatureEmissiveMaps) || kSceneHasAlpha) && light.material != kNone)
-    {
-        uvec3 v = loadTriangle(light.triangle).vertices;
-        vec2 uv0 = interpolate(weights, loadVertex(v.x).uv0, loadVertex(v.y).uv0, loadVertex(v.z).uv0);
-        vec2 uv1 = interpolate(weights, loadVertex(v.x).uv1, loadVertex(v.y).uv1, loadVertex(v.z).uv1);
-        emission = surfaceEmission(light.material, uv0, uv1);
-        if (kSceneHasAlpha)
-            emission *= surfaceCoverage(light.material, v, weights);
-    }
+    vec3 emission = triangleEmission(light, weights);
     float pdf = trianglePdf(index, 0.5 * doubled, distance, cosine);
     vec3 towards = twice_area * (dot(wi, twice_area) < 0.0 ? 1.0 / doubled : -1.0 / doubled);
     return LightSample(wi, distance, offsetOrigin(position, towards), emission / pdf, pdf);
