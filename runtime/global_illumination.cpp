@@ -63,7 +63,7 @@ GlobalIllumination::GlobalIllumination(const Device& device, const SceneGpu& sce
       caustic_photons_(device, scene, PhotonKind::kCaustic, settings.caustic_photons, kCausticBounces),
       photon_tree_(device, "photon_tree", settings.photon_count * settings.photon_bounces),
       caustic_tree_(device, "caustic_tree", settings.caustic_photons * kCausticBounces),
-      cut_(device, settings.photon_count * settings.photon_bounces), samples_(device, scene, width, height, settings.sample_count),
+      cut_(device, scene, settings.photon_count * settings.photon_bounces), samples_(device, scene, width, height, settings.sample_count),
       gather_(device, scene, settings.sample_count, settings.gather_rays), interpolate_(device, scene, settings.sample_count),
       glossy_(device, scene, width * height), caustics_(device, scene), views_(device, scene, width * height)
 {
@@ -72,6 +72,8 @@ GlobalIllumination::GlobalIllumination(const Device& device, const SceneGpu& sce
     const float z = info.bounds_max.z - info.bounds_min.z;
     diagonal_ = std::sqrt(x * x + y * y + z * z);
     longest_side_ = std::max({x, y, z, 1e-20f});
+    if (GuideStage::helps(scene))
+        guide_.emplace(device, scene, settings.photon_count);
 }
 
 const Buffer& GlobalIllumination::record(Recorder& rec, const RayStage& rays, const gpu::CameraParams& camera, const Settings& settings)
@@ -125,18 +127,38 @@ void GlobalIllumination::recordDirect(const Frame& frame) const
                     .seed = frame.camera.seed});
 }
 
-PhotonTreeStage::Output GlobalIllumination::recordPhotons(const Frame& frame) const
+PhotonStage::Output GlobalIllumination::emitPhotons(const Frame& frame)
 {
     const Settings& settings = frame.settings;
-    const auto stored = [&]
+    const PhotonStage::Output stored = photons_.record(frame.rec, frame.rays,
+                                                       {.path_count = settings.photon_count,
+                                                        .bounce_limit = settings.photon_bounces,
+                                                        .specular_depth = chainDepth(settings),
+                                                        .first_path = frame.index * settings.photon_count,
+                                                        .seed = frame.camera.seed,
+                                                        .guide = guide_ ? &*guide_ : nullptr});
+    if (guide_)
+        guide_->learn(frame.rec, stored.photons, stored.flags, settings.photon_count, settings.photon_bounces);
+    return stored;
+}
+
+/// Before the first frame the guide knows nothing: looks where light will be wanted, and follows photons once to learn
+/// which of them get there.
+void GlobalIllumination::rehearse(const Frame& frame)
+{
+    guide_->reset(frame.rec);
+    gather_.look(frame.rec, frame.rays, recordSamples(frame), gatherInput(frame), *guide_);
+    emitPhotons(frame);
+}
+
+PhotonTreeStage::Output GlobalIllumination::recordPhotons(const Frame& frame)
+{
+    const PhotonStage::Output stored = [&]
     {
         const auto scope = frame.rec.scope("photons");
-        return photons_.record(frame.rec, frame.rays,
-                               {.path_count = settings.photon_count,
-                                .bounce_limit = settings.photon_bounces,
-                                .specular_depth = chainDepth(settings),
-                                .first_path = frame.index * settings.photon_count,
-                                .seed = frame.camera.seed});
+        if (guide_ && !guide_->hasLearned())
+            rehearse(frame);
+        return emitPhotons(frame);
     }();
     const auto scope = frame.rec.scope("photon tree");
     return photon_tree_.record(frame.rec, frame.rays, stored);
@@ -151,43 +173,55 @@ CutStage::Output GlobalIllumination::recordCut(const Frame& frame, const PhotonT
                         .iterations = settings.cut_iterations,
                         .difference = settings.cut_difference,
                         .photon_count = settings.density_photons,
-                        .radius = shrunkRadius(settings.density_radius * diagonal_, frame.index)});
+                        .radius = shrunkRadius(settings.density_radius * diagonal_, frame.index),
+                        .shrink = shrunkRadius(1, frame.index),
+                        .probes = settings.cut_probes,
+                        .seed = frame.seed});
 }
 
-void GlobalIllumination::recordIndirect(const Frame& frame, const PhotonTreeStage::Output& map, const CutStage::Output& cut) const
+SamplesStage::Output GlobalIllumination::recordSamples(const Frame& frame) const
 {
     const Settings& settings = frame.settings;
-    const float alpha = settings.sample_alpha * 2 / longest_side_;
-    const float radius = kSearchRadius * diagonal_;
-    const auto samples = [&]
+    return samples_.record(frame.rec, frame.rays,
+                           {.shading_points = frame.points,
+                            .mode = SamplesMode(settings.samples_mode),
+                            .budget = settings.sample_count,
+                            .iterations = settings.sample_iterations,
+                            .alpha = settings.sample_alpha * 2 / longest_side_,
+                            .reach = settings.sample_reach,
+                            .seed = frame.seed});
+}
+
+GatherStage::Input GlobalIllumination::gatherInput(const Frame& frame) const
+{
+    const Settings& settings = frame.settings;
+    return {.mode = CutMode(settings.cut_mode),
+            .ray_count = settings.gather_rays,
+            .specular_depth = chainDepth(settings),
+            .photon_count = settings.density_photons,
+            .radius = (settings.cut_mode == gpu::kCutKnn ? settings.density_radius : kSearchRadius) * diagonal_,
+            .seed = frame.seed};
+}
+
+void GlobalIllumination::recordIndirect(const Frame& frame, const PhotonTreeStage::Output& map, const CutStage::Output& cut)
+{
+    const Settings& settings = frame.settings;
+    const SamplesStage::Output samples = [&]
     {
         const auto scope = frame.rec.scope("samples");
-        return samples_.record(frame.rec, frame.rays,
-                               {.shading_points = frame.points,
-                                .mode = SamplesMode(settings.samples_mode),
-                                .budget = settings.sample_count,
-                                .iterations = settings.sample_iterations,
-                                .alpha = alpha,
-                                .reach = settings.sample_reach,
-                                .seed = frame.seed});
+        return recordSamples(frame);
     }();
     {
         const auto scope = frame.rec.scope("gather");
-        gather_.record(frame.rec, frame.rays, samples, map, cut,
-                       {.mode = CutMode(settings.cut_mode),
-                        .ray_count = settings.gather_rays,
-                        .specular_depth = chainDepth(settings),
-                        .photon_count = settings.density_photons,
-                        .radius = settings.cut_mode == gpu::kCutKnn ? settings.density_radius * diagonal_ : radius,
-                        .seed = frame.seed});
+        gather_.record(frame.rec, frame.rays, samples, map, cut, gatherInput(frame), guide_ ? &*guide_ : nullptr);
     }
     const auto scope = frame.rec.scope("interpolate");
     interpolate_.record(frame.rec, samples,
                         {.points = frame.points,
                          .radiance = frame.radiance,
                          .point_count = frame.pixel_count,
-                         .alpha = alpha,
-                         .radius = radius,
+                         .alpha = settings.sample_alpha * 2 / longest_side_,
+                         .radius = kSearchRadius * diagonal_,
                          .white = settings.view == gpu::kViewIrradiance});
 }
 

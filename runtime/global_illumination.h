@@ -6,9 +6,12 @@
 #include "runtime/stages/direct.h"
 #include "runtime/stages/gather.h"
 #include "runtime/stages/glossy.h"
+#include "runtime/stages/guide.h"
 #include "runtime/stages/interpolate.h"
 #include "runtime/stages/primary.h"
 #include "runtime/stages/views.h"
+
+#include <optional>
 
 class GlobalIllumination
 {
@@ -31,9 +34,13 @@ private:
     struct Frame;
     uint32_t chainDepth(const Settings& settings) const;
     void recordDirect(const Frame& frame) const;
-    PhotonTreeStage::Output recordPhotons(const Frame& frame) const;
+    PhotonStage::Output emitPhotons(const Frame& frame);
+    PhotonTreeStage::Output recordPhotons(const Frame& frame);
+    void rehearse(const Frame& frame);
+    SamplesStage::Output recordSamples(const Frame& frame) const;
+    GatherStage::Input gatherInput(const Frame& frame) const;
     CutStage::Output recordCut(const Frame& frame, const PhotonTreeStage::Output& map) const;
-    void recordIndirect(const Frame& frame, const PhotonTreeStage::Output& map, const CutStage::Output& cut) const;
+    void recordIndirect(const Frame& frame, const PhotonTreeStage::Output& map, const CutStage::Output& cut);
     void recordGlossy(const Frame& frame, const CutStage::Output& cut) const;
     void recordCaustics(const Frame& frame) const;
     void recordView(const Frame& frame) const;
@@ -43,6 +50,7 @@ private:
     bool has_specular_, has_caustic_targets_, has_mirrors_;
     PrimaryStage primary_;
     DirectStage direct_;
+    std::optional<GuideStage> guide_; // where it helps
     PhotonStage photons_, caustic_photons_;
     PhotonTreeStage photon_tree_, caustic_tree_;
     CutStage cut_;

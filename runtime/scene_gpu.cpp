@@ -58,6 +58,8 @@ uint32_t sceneFeatures(const package::Package& package)
 Result<std::unique_ptr<SceneGpu>> SceneGpu::create(const Device& device, const package::Package& package)
 {
     std::unique_ptr<SceneGpu> scene(new SceneGpu(device));
+    for (const gpu::Light& light : package.lights())
+        scene->light_shares_.push_back({.kind = light.kind, .pmf = light.pmf});
     std::optional<Error> too_large;
     const auto add = [&](const char* name, auto data)
     {

@@ -7,6 +7,12 @@
 #include <memory>
 #include <vector>
 
+struct LightShare // of the scene's power
+{
+    uint32_t kind; // gpu::kLight*
+    float pmf;
+};
+
 class SceneGpu
 {
 public:
@@ -25,6 +31,8 @@ public:
     bool hasFeature(uint32_t features) const { return (constants_[0] & features) != 0; }
     /// Replaces light `index` from the next kernel of `rec` on; with the kind and pmf it has, on which other tables rest.
     void setLight(Recorder& rec, uint32_t index, const gpu::Light& light) const;
+    /// By light index.
+    std::span<const LightShare> lightShares() const { return light_shares_; }
     /// Some light has an extent, so that a ray may find it: an emissive triangle or an environment.
     bool hasAreaLights() const { return hasFeature(gpu::kFeatureTriangleLights | gpu::kFeatureEnvironment); }
 
@@ -35,6 +43,7 @@ private:
 
     const Device& device_;
     gpu::SceneInfo info_{};
+    std::vector<LightShare> light_shares_;
     std::array<uint32_t, 2> constants_{};
     Buffer info_buffer_;
     std::vector<Buffer> buffers_;           // by binding, kBvhNodesBinding first

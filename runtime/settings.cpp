@@ -24,6 +24,7 @@ constexpr std::array kKnobs{
     Knob{"cut.mode", &Settings::cut_mode, 0, 3, "", "how gather rays read the photons", "knn,nearest,leaves,refined"},
     Knob{"cut.iterations", &Settings::cut_iterations, 0, 16, "", "rounds of refinement of the illumination cut"},
     Knob{"cut.difference", &Settings::cut_difference, 0, 10, "", "relative difference of irradiance that refinement lets pass"},
+    Knob{"cut.probes", &Settings::cut_probes, 0, 64, "", "rays that a node of the cut feels for its surface with"},
     Knob{"samples.mode", &Settings::samples_mode, 0, 2, "", "how irradiance samples are placed", "uniform,seeded,seeded+kmeans"},
     Knob{"samples.count", &Settings::sample_count, 16, 65536, "", "irradiance samples a frame"},
     Knob{"samples.iterations", &Settings::sample_iterations, 0, 16, "", "iterations of k-means"},
@@ -83,7 +84,7 @@ Result<Settings> presetSettings(std::string_view name)
     Settings settings;
     if (name == "preview")
     {
-        settings.photon_count = 4000;
+        settings.photon_count = 3000;
         settings.photon_bounces = 6;
         settings.density_photons = 16;
         settings.cut_iterations = 1;
@@ -98,7 +99,7 @@ Result<Settings> presetSettings(std::string_view name)
     else if (name == "high")
     {
         settings.direct_samples = 4;
-        settings.photon_count = 400000;
+        settings.photon_count = 200000;
         settings.sample_count = 16384;
         settings.gather_rays = 512;
         settings.caustic_photons = 400000;

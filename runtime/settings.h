@@ -12,11 +12,12 @@ struct Settings
 {
     uint32_t specular_depth = 8;
     uint32_t direct_samples = 1;
-    uint32_t photon_count = 100000; // paths
+    uint32_t photon_count = 50000; // paths
     uint32_t photon_bounces = 12;
     uint32_t density_photons = 25;
     float density_radius = 0.03f; // of the scene's diagonal
-    uint32_t cut_mode = 3; // CutMode
+    uint32_t cut_mode = 2; // CutMode
+    uint32_t cut_probes = 8;
     uint32_t cut_iterations = 3;
     float cut_difference = 0.2f;
     uint32_t samples_mode = 2; // SamplesMode

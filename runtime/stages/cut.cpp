@@ -1,9 +1,10 @@
 #include "runtime/stages/cut.h"
 
-CutStage::CutStage(const Device& device, uint32_t max_photons)
+CutStage::CutStage(const Device& device, const SceneGpu& scene, uint32_t max_photons)
     : summarise_(device.kernel("cut/summarise", climbConstants(device))), level_mean_(device.kernel("cut/level_mean")),
       threshold_kernel_(device.kernel("cut/threshold")), coarse_(device.kernel("cut/coarse", climbConstants(device))), select_(device.kernel("cut/select")),
-      refine_(device.kernel("cut/refine")), collect_(device.kernel("cut/collect")), reorder_(device.kernel("cut/reorder")),
+      refine_(device.kernel("cut/refine")), collect_(device.kernel("cut/collect")), reorder_(device.kernel("cut/reorder")), finest_(device.kernel("cut/finest")), probe_(device.kernel("cut/probe")),
+      cover_(device.kernel("cut/cover", scene.constants())),
       compaction_(device, "cut.compaction", 2 * max_photons), tree_(device, "cut.tree", max_photons),
       sums_(device.array<gpu::PhotonSums>("cut.sums", max_photons)), arrivals_(device.array<uint32_t>("cut.arrivals", max_photons)),
       partials_(device.array<gpu::PartialMean>("cut.partials", gpu::kPartialMeans)),
@@ -14,7 +15,8 @@ CutStage::CutStage(const Device& device, uint32_t max_photons)
       members_(device.array<uint32_t>("cut.members", 2 * uint64_t(max_photons))),
       finals_(device.array<gpu::CutNode>("cut.finals", 2 * uint64_t(max_photons))), size_(device.array<gpu::QueueSize>("cut.size", 1)),
       ids_(device.array<uint32_t>("cut.ids", max_photons)), spheres_(device.array<gpu::vec4>("cut.spheres", max_photons)),
-      nodes_(device.array<gpu::CutNode>("cut.nodes", max_photons))
+      nodes_(device.array<gpu::CutNode>("cut.nodes", max_photons)),
+      probes_(device, "cut.probes", gpu::kCutProbeCapacity), hits_(device.array<gpu::Hit>("cut.hits", gpu::kCutProbeCapacity))
 {
 }
 
@@ -27,7 +29,8 @@ CutStage::Output CutStage::record(Recorder& rec, const RayStage& rays, const Pho
                           .last = 0,
                           .difference = in.difference,
                           .photon_count = in.photon_count,
-                          .radius = in.radius};
+                          .radius = in.radius,
+                          .spread = gpu::kCutSpread * in.shrink};
     rec.clear(arrivals_);
     rec.runIndirect(summarise_, map.size, 0, NoParams{},
                     {{"Size", map.size}, {"TreeNodes", tree_nodes}, {"Photons", map.photons}, {"LeafParents", leaf_parents},
@@ -54,9 +57,14 @@ CutStage::Output CutStage::record(Recorder& rec, const RayStage& rays, const Pho
                      {"Divided", divided_}, {"WorkSize", *work_size}, {"Work", *work}});
     rays.close(rec, *work_size);
     rec.clear(members_);
-    for (uint32_t round = 0; round <= in.iterations; ++round)
+    if (in.mode == CutMode::kLeaves)
+        rec.runIndirect(finest_, *work_size, 0, params,
+                        {{"Size", map.size}, {"TreeNodes", tree_nodes}, {"Photons", map.photons}, {"LeafParents", leaf_parents},
+                         {"NodeParents", node_parents}, {"Sums", sums_}, {"WorkSize", *work_size}, {"Work", *work},
+                         {"Members", members_}, {"Finals", finals_}});
+    for (uint32_t round = 0; in.mode != CutMode::kLeaves && round <= in.iterations; ++round)
     {
-        params.last = round == in.iterations || in.mode == CutMode::kLeaves;
+        params.last = round == in.iterations;
         rec.clear(*next_size);
         rec.runIndirect(refine_, *work_size, 0, params,
                         {{"Size", map.size}, {"TreeNodes", tree_nodes}, {"Photons", map.photons}, {"Sums", sums_}, {"WorkSize", *work_size},
@@ -70,5 +78,15 @@ CutStage::Output CutStage::record(Recorder& rec, const RayStage& rays, const Pho
     tree_.record(rec, spheres_, size_);
     rec.runIndirect(reorder_, size_, 0, NoParams{},
                     {{"Size", size_}, {"Ids", ids_}, {"Order", tree_.order()}, {"Finals", finals_}, {"Nodes", nodes_}});
+    if (in.probes > 0 && in.mode != CutMode::kNearest)
+        recordProbes(rec, rays, in);
     return output();
+}
+
+void CutStage::recordProbes(Recorder& rec, const RayStage& rays, const Input& in) const
+{
+    const gpu::ProbeParams params{.ray_count = in.probes, .seed = in.seed};
+    rec.runIndirect(probe_, size_, 0, params, {{"Size", size_}, {"Nodes", nodes_}, {"Queue", probes_.size}, {"Rays", probes_.rays}});
+    rays.closest(rec, probes_, hits_, in.seed);
+    rec.runIndirect(cover_, size_, 0, params, {{"Size", size_}, {"Rays", probes_.rays}, {"Hits", hits_}, {"Nodes", nodes_}});
 }

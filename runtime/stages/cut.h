@@ -9,7 +9,7 @@ class CutStage
 {
 public:
     /// @param max_photons in the map at most
-    CutStage(const Device& device, uint32_t max_photons);
+    CutStage(const Device& device, const SceneGpu& scene, uint32_t max_photons);
 
     struct Input
     {
@@ -18,6 +18,9 @@ public:
         float difference;     // Delta_E, relative
         uint32_t photon_count; // k of density estimation
         float radius;         // metres, of density estimation at most
+        float shrink;         // of the nodes' supports, <= 1: in a standing picture they may be as noisy as they are sharp
+        uint32_t probes;      // rays that a node feels for its surface with; 0: it is taken for a plane
+        uint32_t seed;
     };
     struct Output
     {
@@ -30,9 +33,13 @@ public:
     Output output() const { return {.size = size_, .nodes = nodes_, .tree = tree_}; }
 
 private:
-    Kernel summarise_, level_mean_, threshold_kernel_, coarse_, select_, refine_, collect_, reorder_;
+    void recordProbes(Recorder& rec, const RayStage& rays, const Input& in) const;
+
+    Kernel summarise_, level_mean_, threshold_kernel_, coarse_, select_, refine_, collect_, reorder_, finest_, probe_, cover_;
     Compaction compaction_;
     Tree tree_;
     Buffer sums_, arrivals_, partials_, threshold_, id_count_, divided_, work_, next_work_, work_size_, next_work_size_, members_, finals_;
     Buffer size_, ids_, spheres_, nodes_;
+    RayQueue probes_;
+    Buffer hits_;
 };

@@ -11,8 +11,23 @@ GatherStage::GatherStage(const Device& device, const SceneGpu& scene, uint32_t m
 {
 }
 
+void GatherStage::look(Recorder& rec, const RayStage& rays, const SamplesStage::Output& samples, const gpu::GatherParams& params,
+                       GuideStage* guide) const
+{
+    rec.run(generate_, max_samples_ * params.ray_count, params,
+            {{"Size", samples.size}, {"Samples", samples.samples}, {"Queue", queue_.size}, {"Rays", queue_.rays}});
+    rays.closest(rec, queue_, hits_, traceSeed(params.seed, 0, 0));
+    if (guide)
+        guide->mark(rec, queue_, max_samples_ * params.ray_count, hits_);
+}
+
+void GatherStage::look(Recorder& rec, const RayStage& rays, const SamplesStage::Output& samples, const Input& in, GuideStage& guide) const
+{
+    look(rec, rays, samples, gpu::GatherParams{.ray_count = in.ray_count, .seed = in.seed}, &guide);
+}
+
 void GatherStage::record(Recorder& rec, const RayStage& rays, const SamplesStage::Output& samples, const PhotonTreeStage::Output& map,
-                         const CutStage::Output& cut, const Input& in) const
+                         const CutStage::Output& cut, const Input& in, GuideStage* guide) const
 {
     gpu::GatherParams params{.ray_count = in.ray_count,
                              .seed = in.seed,
@@ -21,13 +36,13 @@ void GatherStage::record(Recorder& rec, const RayStage& rays, const SamplesStage
                              .mode = uint32_t(in.mode),
                              .photon_count = in.photon_count,
                              .radius = in.radius};
-    rec.run(generate_, max_samples_ * in.ray_count, params,
-            {{"Size", samples.size}, {"Samples", samples.samples}, {"Queue", queue_.size}, {"Rays", queue_.rays}});
+    look(rec, rays, samples, params, guide);
     const RayQueue* queue = &queue_;
     const RayQueue* next = &next_queue_;
     for (; params.depth <= params.depth_limit; ++params.depth)
     {
-        rays.closest(rec, *queue, hits_, traceSeed(in.seed, 0, params.depth));
+        if (params.depth > 0)
+            rays.closest(rec, *queue, hits_, traceSeed(in.seed, 0, params.depth));
         rays.reset(rec, next->size);
         {
             const auto scope = rec.scope("gather.link"); // the lookups: what the cut is there for

@@ -1,6 +1,7 @@
 // Final gathering: every sample's irradiance from hundreds of rays, which read the illumination cut where they end.
 #pragma once
 #include "runtime/stages/cut.h"
+#include "runtime/stages/guide.h"
 #include "runtime/stages/samples.h"
 #include "shaders/gather/gather.h"
 
@@ -18,11 +19,16 @@ public:
         float radius;            // metres: of density estimation, and how far a cut node may be
         uint32_t seed;
     };
-    /// Sets irradiance and harmonic of samples.samples.
+    /// Only tells `guide` where the samples' rays end.
+    void look(Recorder& rec, const RayStage& rays, const SamplesStage::Output& samples, const Input& in, GuideStage& guide) const;
+    /// Sets irradiance and harmonic of samples.samples. @param guide if not null is told where rays end
     void record(Recorder& rec, const RayStage& rays, const SamplesStage::Output& samples, const PhotonTreeStage::Output& map,
-                const CutStage::Output& cut, const Input& in) const;
+                const CutStage::Output& cut, const Input& in, GuideStage* guide = nullptr) const;
 
 private:
+    void look(Recorder& rec, const RayStage& rays, const SamplesStage::Output& samples, const gpu::GatherParams& params,
+              GuideStage* guide) const;
+
     uint32_t max_samples_;
     bool has_specular_;
     Kernel generate_, link_, link_knn_, sum_;

@@ -1,6 +1,6 @@
 // Photons: emission from every light and their paths through the scene.
 #pragma once
-#include "runtime/stages/rays.h"
+#include "runtime/stages/guide.h"
 #include "shaders/photons/photons.h"
 
 /// Which photons a map holds (path ownership: each light path is in one of them where it is read).
@@ -23,6 +23,7 @@ public:
         uint32_t specular_depth; // delta events a path may have besides
         uint32_t first_path;     // index of path 0 in the sequence of all frames
         uint32_t seed;
+        const GuideStage* guide = nullptr; // says how photons leave; of Kind::kGlobal only
     };
     struct Output
     {
@@ -35,7 +36,6 @@ public:
 private:
     PhotonKind kind_;
     bool has_specular_, has_targets_;
-    Kernel emit_, scatter_;
-    RayQueue queue_, next_queue_;
-    Buffer hits_, states_, photons_, flags_;
+    Kernel emit_, trace_;
+    Buffer starts_, photons_, flags_, traced_;
 };

@@ -71,6 +71,12 @@ void RayStage::closest(Recorder& rec, const RayQueue& queue, const Buffer& hits,
                     {{"Queue", queue.size}, {"Rays", queue.rays}, {"Hits", hits}});
 }
 
+void RayStage::count(Recorder& rec, const Buffer& size) const
+{
+    if (tally_)
+        tally_->note(rec, size, false);
+}
+
 void RayStage::visible(Recorder& rec, const Buffer& size, const Buffer& shadow_rays, const Buffer& radiance) const
 {
     if (tally_)

@@ -55,6 +55,8 @@ public:
     /// @param shadow_rays gpu::ShadowRay[], @param radiance vec3[]
     void visible(Recorder& rec, const Buffer& size, const Buffer& shadow_rays, const Buffer& radiance) const;
 
+    /// Notes rays that another stage has traced itself. @param size gpu::QueueSize: their count
+    void count(Recorder& rec, const Buffer& size) const;
     /// Notes every queue that is traced from now on; null ends that.
     void countInto(RayTally* tally) { tally_ = tally; }
 

@@ -38,7 +38,9 @@ bool shouldDivide(uint node)
     if (isDivided(left) || isDivided(right))
         return true;
     PhotonNode n = photonNode(node);
-    if (params.mode == kCutLeaves || !n.flat_)
+    if (params.mode == kCutLeaves)
+        return n.count > kCutFewest || !n.flat_;
+    if (!n.flat_)
         return n.count > kCutFewest;
     return isCandidate(left) && isCandidate(right);
 }

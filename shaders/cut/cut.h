@@ -21,7 +21,7 @@ struct CutNode // one node of the cut: what light falls on the surface around it
 {
     vec3 center;     // metres: power-weighted mean of its photons
     float support;   // metres: how far from the centre it counts
-    vec3 irradiance; // W/m^2
+    vec3 irradiance; // W/m^2: what its photons give at its centre, falling to 0 at its support; E_p in mode kCutNearest
     uint normal;     // octahedral
 };
 GPU_SIZE(CutNode, 32);
@@ -51,6 +51,19 @@ GPU_CONST uint kPartialGroupSize = 256u;
 GPU_CONST uint kCutLevelNodes = 4096u; // nodes of the level that E_min is taken from
 GPU_CONST uint kCutFewest = 8u;        // nodes of fewer photons are not divided
 
+// A node's support in radii of density estimation: wider is smoother and slower, narrower sharper. 0.7 to 1 are near the
+// best in all scenes.
+GPU_CONST float kCutSpread = 0.8f;
+GPU_CONST uint kCutProbeCapacity = 1u << 20u; // rays that feel for surfaces, of all nodes
+GPU_CONST float kMostUncovered = 4.0f;        // a node's light grows no more than this
+
+struct ProbeParams
+{
+    uint ray_count; // that a node wants
+    uint seed;
+};
+GPU_SIZE(ProbeParams, 8);
+
 struct CutParams
 {
     uint mode;         // kCut*
@@ -58,8 +71,9 @@ struct CutParams
     float difference;  // Delta_E: relative difference that is let pass
     uint photon_count; // k of the density estimation
     float radius;      // metres, of the density estimation at most
+    float spread;      // a node's support, in radii of the density estimation at its centre
 };
-GPU_SIZE(CutParams, 20);
+GPU_SIZE(CutParams, 24);
 
 GPU_NAMESPACE_END
 #endif

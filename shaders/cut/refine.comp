@@ -4,7 +4,10 @@
 #include "shaders/cut/cut.h"
 
 // One round of refinement: the irradiance E_p at a node's centre by density estimation; where it is near E~ the node is
-// final, else its children take its place (Algorithm 3, second half). One thread per node of the working list.
+// final, else its children take its place (Algorithm 3, second half). A final node spreads the power of its photons over its
+// support, as far as density estimation reaches there: the cut holds the power of all photons, no more and no less. (E_p of
+// the nodes, weighted to a mean, would not: nodes are many where photons happen to be dense.) One thread per node of the
+// working list.
 
 layout(local_size_x = kCutGroupSize) in;
 layout(push_constant, scalar) uniform Params { CutParams params; };
@@ -20,7 +23,7 @@ layout(set = 1, binding = 7, scalar) writeonly buffer Next { uint next[]; };
 layout(set = 1, binding = 8, scalar) writeonly buffer Members { uint members[]; };  // by id: 1 where final
 layout(set = 1, binding = 9, scalar) writeonly buffer Finals { CutNode finals[]; }; // by id
 #include "shaders/lib/density.glsl"
-#include "shaders/lib/photon_node.glsl"
+#include "shaders/lib/spread.glsl"
 
 void divide(uint id)
 {
@@ -54,8 +57,8 @@ void main()
         divide(id);
         return;
     }
-    // A node of few photons speaks for as much surface as density estimation with that few would.
-    float support = max(node.longest, sqrt(estimate.radius2 * float(kCutFewest) / float(params.photon_count)));
     members[id] = 1u;
-    finals[id] = CutNode(node.center, support, estimate.irradiance, packNormal(node.normal));
+    finals[id] = spreadNode(id, node, params.spread * max(node.longest, sqrt(estimate.radius2)));
+    if (params.mode == kCutNearest)
+        finals[id].irradiance = estimate.irradiance;
 }

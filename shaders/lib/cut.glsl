@@ -2,8 +2,7 @@
 // and `buffer CutNodes { CutNode cut_nodes[]; }` before it includes this. Functions only.
 #ifndef LIB_CUT_GLSL
 #define LIB_CUT_GLSL
-#include "shaders/cut/cut.h"
-#include "shaders/lib/math.glsl"
+#include "shaders/lib/cut_node.glsl"
 #include "shaders/lib/tree.glsl"
 
 /// The nearest cut node that faces the same way, within sqrt(radius2); kNone where there is none.
@@ -35,29 +34,20 @@ vec3 nearestCutIrradiance(vec3 x, vec3 n, float radius2)
     return cut_nodes[nearest].irradiance;
 }
 
-// Where nodes cover a surface evenly their weights sum to more than 1 (pi / 2 for a lattice). Below this the place lies at
-// the rim of what the photons lit, and the light fades: nodes exist where photons fell, so nothing else would say that
-// there are none here.
-const float kFullCover = 0.5;
-
-/// Irradiance at x from the cut nodes whose support holds it, weighted by distance and normal; 0 where no photon fell near.
+/// Irradiance at x: the sum of what the cut nodes around it spread there. 0 where no photon fell near: what light there is
+/// has gone to the places where photons fell.
 vec3 cutIrradiance(vec3 x, vec3 n)
 {
     vec3 sum = vec3(0.0);
-    float weights = 0.0;
     uint first, end;
     beginRanges(cut_size.count);
     while (nextRange(x, 0.0, first, end))
         for (uint i = first; i < end; ++i)
         {
             CutNode node = cut_nodes[i];
-            vec3 normal = unpackNormal(node.normal);
-            float distance2 = surfaceDistance2(node.center - x, normal);
-            float weight = max(0.0, 1.0 - distance2 / square(node.support)) * max(0.0, dot(n, normal));
-            sum += weight * node.irradiance;
-            weights += weight;
+            sum += cutWeight(node, x, n) * node.irradiance;
         }
-    return sum / max(weights, kFullCover);
+    return sum;
 }
 
 #endif

@@ -151,6 +151,20 @@ Emission emitEnvironment(Light light, float aim, bool aimed, uint target, vec2 u
     return Emission(origin, -from.wi, from.weight / pdf);
 }
 
+/// One photon of `light`, as if the light had been picked with its pmf.
+Emission emitFrom(Light light, float aim, bool aimed, uint target, vec2 u, vec2 v, inout Sampler s)
+{
+    if (hasFeature(kFeatureEnvironment) && light.kind == kLightEnvironment)
+        return emitEnvironment(light, aim, aimed, target, u, nextBits(s), v);
+    if (hasFeature(kFeatureTriangleLights) && (light.kind == kLightTriangle || light.kind == kLightTriangleTwoSided))
+        return emitTriangle(light, aim, aimed, target, u, v, nextPair(s).x);
+    if (light.kind != kLightDirectional)
+        return emitPoint(light, aim, aimed, target, u);
+    float pdf;
+    vec3 origin = beamOrigin(light.p1, aim, aimed, target, u, pdf);
+    return Emission(origin, light.p1, light.emission / (light.pmf * pdf));
+}
+
 /// One photon of the scene's total power. Uses kEmitDimensions pairs of the sampler at most.
 /// @param aim probability of being aimed at a specular object; 0 where the scene has none
 Emission emitPhoton(float aim, inout Sampler s)
@@ -163,18 +177,9 @@ Emission emitPhoton(float aim, inout Sampler s)
     uint i = toIndex(pick.x, scene.light_count);
     if (toUnitFloat(pick.y) >= light_aliases[i].threshold)
         i = light_aliases[i].alias;
-    Light light = loadLight(i);
     bool aimed = toUnitFloat(target_pick.x) < aim;
     uint target = aimed ? toIndex(target_pick.y, scene.caustic_target_count) : 0u;
-    if (hasFeature(kFeatureEnvironment) && light.kind == kLightEnvironment)
-        return emitEnvironment(light, aim, aimed, target, u, nextBits(s), v);
-    if (hasFeature(kFeatureTriangleLights) && (light.kind == kLightTriangle || light.kind == kLightTriangleTwoSided))
-        return emitTriangle(light, aim, aimed, target, u, v, nextPair(s).x);
-    if (light.kind != kLightDirectional)
-        return emitPoint(light, aim, aimed, target, u);
-    float pdf;
-    vec3 origin = beamOrigin(light.p1, aim, aimed, target, u, pdf);
-    return Emission(origin, light.p1, light.emission / (light.pmf * pdf));
+    return emitFrom(loadLight(i), aim, aimed, target, u, v, s);
 }
 
 #endif

@@ -4,14 +4,12 @@
 #include "shaders/lib/emission.glsl"
 #include "shaders/photons/photons.h"
 
-// Sends one photon per thread into the scene.
+// How one photon per thread leaves its light.
 
 layout(local_size_x = kRaysGroupSize) in;
 layout(push_constant, scalar) uniform Params { EmitParams params; };
 
-layout(set = 1, binding = 0, scalar) buffer Queue { QueueSize queue; };
-layout(set = 1, binding = 1, scalar) writeonly buffer Rays { Ray rays[]; };
-layout(set = 1, binding = 2, scalar) writeonly buffer States { PhotonState states[]; };
+layout(set = 1, binding = 0, scalar) writeonly buffer Starts { PhotonStart starts[]; };
 
 void main()
 {
@@ -20,8 +18,5 @@ void main()
         return;
     Sampler sampler_ = Sampler(params.seed, params.first_path + path, 0u);
     Emission emission = emitPhoton(params.aim, sampler_);
-    if (emission.power == vec3(0.0))
-        return;
-    states[path] = PhotonState(emission.power / float(params.path_count), kNone, 0u, 0u);
-    rays[atomicAdd(queue.count, 1u)] = Ray(emission.origin, kInfinity, emission.direction, path);
+    starts[path] = PhotonStart(emission.origin, emission.direction, emission.power / float(params.path_count));
 }

@@ -14,14 +14,13 @@ struct Photon // where a photon met a surface that scatters
 };
 GPU_SIZE(Photon, 32);
 
-struct PhotonState // of a path between two vertices
+struct PhotonStart // how a photon leaves its light
 {
-    vec3 power;
-    uint medium;   // material index of the absorbing medium it is in, or kNone
-    uint specular; // delta events since the light
-    uint stored;   // scattering vertices so far
+    vec3 origin;
+    vec3 direction; // unit
+    vec3 power;     // watts; 0: it does not
 };
-GPU_SIZE(PhotonState, 24);
+GPU_SIZE(PhotonStart, 36);
 
 struct EmitParams
 {
@@ -32,16 +31,16 @@ struct EmitParams
 };
 GPU_SIZE(EmitParams, 16);
 
-struct ScatterParams
+struct TraceParams
 {
     uint path_count;
     uint first_path;
     uint seed;
-    uint event;        // surfaces met before this one
+    uint event_limit;  // most surfaces met
     uint bounce_limit; // most photons a path may store
     uint caustic;      // 1: store only the first scattering vertex, and that only after a delta event
 };
-GPU_SIZE(ScatterParams, 24);
+GPU_SIZE(TraceParams, 24);
 
 // Pairs of a path's sampler: emission first, then the same number for every surface met.
 GPU_CONST uint kEmitDimensions = 6u;

@@ -4,6 +4,7 @@
 #include "tests/stages/ray_test.h"
 
 #include <map>
+#include <numbers>
 
 namespace
 {
@@ -100,8 +101,9 @@ struct CoarseCut
             return false;
         const bool left = divide(node.left), right = divide(node.right);
         divided[id] = left || right ||
-                      (leaves || !node.flat_ ? node.count() > gpu::kCutFewest
-                                             : isCandidate(node.left) && isCandidate(node.right));
+                      (leaves       ? node.count() > gpu::kCutFewest || !node.flat_
+                       : node.flat_ ? isCandidate(node.left) && isCandidate(node.right)
+                                    : node.count() > gpu::kCutFewest);
         return divided[id];
     }
     void run(uint32_t photon_count)
@@ -119,7 +121,8 @@ class Cuts : public GiTest
 protected:
     static constexpr uint32_t kNearest = 50;
     static constexpr CutStage::Input kRefined{
-        .mode = CutMode::kRefined, .iterations = 4, .difference = 0.2f, .photon_count = kNearest, .radius = 0.4f};
+        .mode = CutMode::kRefined, .iterations = 4, .difference = 0.2f, .photon_count = kNearest, .radius = 0.4f, .shrink = 1,
+        .probes = 0, .seed = 0};
 
     void SetUp() override
     {
@@ -141,7 +144,7 @@ protected:
 
     std::vector<gpu::CutNode> cutOf(const PhotonMap& map, const CutStage::Input& in)
     {
-        const CutStage stage(device(), std::max(uint32_t(map.photons.size()), 1u));
+        const CutStage stage(device(), *scene_, std::max(uint32_t(map.photons.size()), 1u));
         std::optional<CutStage::Output> out;
         submit(*scene_, [&](Recorder& rec) { (void)stage.record(rec, map.rays, *map.gpu, in); });
         submit(*scene_, [&](Recorder& rec)
@@ -257,7 +260,9 @@ TEST_F(Cuts, StartWithTheCoarseCutOfAlgorithm3)
 TEST_F(Cuts, HoldTheDensityEstimateOfEveryNodesCentre)
 {
     const auto map = roomMap(3000);
-    const auto cut = cutOf(*map, kRefined);
+    CutStage::Input nearest = kRefined;
+    nearest.mode = CutMode::kNearest; // the only one that reads E_p itself
+    const auto cut = cutOf(*map, nearest);
     double sum = 0, difference = 0, rise = 0;
     for (const gpu::CutNode& node : cut)
     {
@@ -280,6 +285,118 @@ TEST_F(Cuts, HoldTheDensityEstimateOfEveryNodesCentre)
     }
     fmt::print("  {} nodes: mean difference from the exact k-th distance {:.2f} %, bias {:+.2f} %\n", cut.size(),
                100 * difference / sum, 100 * rise / sum);
+}
+
+TEST_F(Cuts, SpreadThePowerOfAllPhotonsAndNoMore)
+{
+    const auto map = roomMap(3000);
+    const std::vector<Node> nodes = nodesOf(*map);
+    for (const CutMode mode : {CutMode::kLeaves, CutMode::kRefined})
+    {
+        CutStage::Input in = kRefined;
+        in.mode = mode;
+        Double3 spread, emitted;
+        for (const gpu::CutNode& node : cutOf(*map, in)) // the integral of 1 - (d / support)^2 over a plane
+            spread = spread + 0.5 * std::numbers::pi * node.support * node.support * Double3(node.irradiance);
+        for (const gpu::Photon& photon : map->photons)
+            emitted = emitted + Double3(photon.power);
+        fmt::print("  mode {}: {:.6g} W of {:.6g} W\n", uint32_t(mode), spread.x, emitted.x);
+        EXPECT_NEAR(spread.x, emitted.x, 1e-4 * emitted.x); // rounding of thousands of summands
+        EXPECT_NEAR(spread.y, emitted.y, 1e-4 * emitted.y);
+        EXPECT_NEAR(spread.z, emitted.z, 1e-4 * emitted.z);
+    }
+}
+
+TEST_F(Cuts, ReachAsFarAsDensityEstimationWould)
+{
+    const auto map = roomMap(3000);
+    const std::vector<Node> nodes = nodesOf(*map);
+    std::map<uint32_t, uint32_t> parents;
+    for (uint32_t id = 0; id + 1 < map->photons.size(); ++id)
+        parents[nodes[id].left] = parents[nodes[id].right] = id;
+    CutStage::Input in = kRefined;
+    in.mode = CutMode::kLeaves;
+    const auto cut = cutOf(*map, in);
+    in.shrink = 0.25f;
+    const auto shrunk = cutOf(*map, in);
+    std::map<std::tuple<float, float, float>, float> shrunk_supports;
+    for (const gpu::CutNode& node : shrunk)
+        shrunk_supports[{node.center.x, node.center.y, node.center.z}] = node.support;
+    for (const gpu::CutNode& node : cut)
+    {
+        uint32_t id = idsOf({node}, nodes)[0];
+        while (nodes[id].count() <= gpu::kCutFewest)
+            id = parents.at(id);
+        const Node& above = nodes[id];
+        // Photons of that node a square metre, from its E~ and their power.
+        double weight = 0;
+        for (uint32_t i = above.first; i < above.end; ++i)
+            weight += luminanceOf(map->photons[i].power);
+        const double area = weight / above.irradiance;
+        const double even = std::sqrt(area * kNearest / above.count() / std::numbers::pi);
+        EXPECT_NEAR(node.support, gpu::kCutSpread * std::min(even, double(in.radius)), 1e-3 * node.support);
+        EXPECT_NEAR(shrunk_supports.at({node.center.x, node.center.y, node.center.z}), 0.25 * node.support, 1e-5 * node.support);
+    }
+}
+
+/// On a strip much narrower than its support a node's light would fall beside it for the most part.
+TEST_F(Cuts, KeepTheirLightOnNarrowSurfaces)
+{
+    constexpr float kWidth = 0.1f, kLength = 4;
+    SceneBuilder builder;
+    builder.quad({-kLength / 2, 0, -kWidth / 2}, {0, 0, kWidth}, {kLength, 0, 0}, builder.material(lambert(0.5)));
+    const auto scene = load(builder.compile());
+    Random random(11);
+    std::vector<gpu::Photon> photons;
+    for (int i = 0; i < 2000; ++i)
+        photons.push_back({.position = {random.between(-kLength / 2, kLength / 2), 0, random.between(-kWidth / 2, kWidth / 2)},
+                           .direction = packedNormal({0, -1, 0}),
+                           .power = {1, 1, 1},
+                           .normal = packedNormal({0, 1, 0})});
+    const auto map = mapOf(*scene, photons);
+    CutStage::Input in = kRefined;
+    in.mode = CutMode::kLeaves;
+    in.photon_count = 800;
+    const auto cutWith = [&](uint32_t probes)
+    {
+        in.probes = probes;
+        const CutStage stage(device(), *scene, 2000);
+        std::optional<CutStage::Output> out;
+        submit(*scene, [&](Recorder& rec) { out.emplace(stage.record(rec, map->rays, *map->gpu, in)); });
+        return contents<gpu::CutNode>(out->nodes, countOf(out->size));
+    };
+    const auto flat = cutWith(0), felt = cutWith(64);
+    ASSERT_EQ(flat.size(), felt.size());
+    // What falls on the strip's own area, by a fine grid; nodes whose disc ends with the strip are left out.
+    const auto onStrip = [&](const gpu::CutNode& node)
+    {
+        constexpr int kSteps = 200;
+        double sum = 0;
+        for (int i = 0; i < kSteps; ++i)
+            for (int j = 0; j < kSteps; ++j)
+            {
+                const double x = (2 * (i + 0.5) / kSteps - 1) * node.support, z = ((j + 0.5) / kSteps - 0.5) * kWidth;
+                const double dz = z - node.center.z;
+                sum += std::max(0.0, 1 - (x * x + dz * dz) / (double(node.support) * node.support));
+            }
+        return sum * (2 * node.support / kSteps) * (kWidth / kSteps) * node.irradiance.x;
+    };
+    double before = 0, after = 0, power = 0;
+    uint32_t count = 0;
+    for (size_t i = 0; i < flat.size(); ++i)
+    {
+        if (std::abs(flat[i].center.x) + flat[i].support > kLength / 2)
+            continue;
+        before += onStrip(flat[i]);
+        after += onStrip(felt[i]);
+        power += 0.5 * std::numbers::pi * flat[i].support * flat[i].support * flat[i].irradiance.x;
+        ++count;
+    }
+    fmt::print("  {} nodes of {:.1f} W: {:.1f} W on the strip, {:.1f} W after probing\n", count, power, before, after);
+    ASSERT_GT(count, 20u);
+    EXPECT_LT(before, 0.7 * power); // or the test would show nothing
+    // 64 rays each: the standard error of one node's covered part p is sqrt(p (1 - p) / 64), below 0.2 p for p > 0.3.
+    EXPECT_NEAR(after, power, 4 * 0.2 / std::sqrt(count) * power);
 }
 
 TEST_F(Cuts, RefineWhereEstimatesDisagreeAndNowhereElse)
@@ -345,7 +462,7 @@ TEST_F(Cuts, AreReadNearlyAsDensityIsEstimated)
     const uint32_t count = uint32_t(samples.size());
     constexpr uint32_t kRays = 64;
     const Buffer size = sizeBuffer(count), on_gpu = upload("test.samples", samples), spheres;
-    const CutStage stage(device(), uint32_t(map->photons.size()));
+    const CutStage stage(device(), *scene_, uint32_t(map->photons.size()));
     const GatherStage gather(device(), *scene_, count, kRays);
     const auto gathered = [&](CutMode mode)
     {

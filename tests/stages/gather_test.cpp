@@ -30,31 +30,26 @@ double cornerFormFactor(double a, double b, double c)
 class Gather : public GiTest
 {
 protected:
+    /// So wide that its light is even over the room, to 1e-6.
     static gpu::CutNode node(gpu::vec3 center, Double3 normal, gpu::vec3 irradiance)
     {
-        return {.center = center, .support = 0.6f, .irradiance = irradiance, .normal = packedNormal(normal)};
+        return {.center = center, .support = 2000, .irradiance = irradiance, .normal = packedNormal(normal)};
     }
 
-    /// Nodes all over the room's walls. @param irradiance by the wall's inward normal
+    /// A node on each of the room's walls. @param irradiance by the wall's inward normal
     template <typename Irradiance>
     static std::vector<gpu::CutNode> wallNodes(Irradiance&& irradiance)
     {
         std::vector<gpu::CutNode> nodes;
-        constexpr int kSteps = 8;
-        const auto at = [](float low, float high, int i) { return low + (high - low) * (float(i) + 0.5f) / kSteps; };
-        for (int i = 0; i < kSteps; ++i)
-            for (int k = 0; k < kSteps; ++k)
-                for (const bool upper : {false, true})
-                {
-                    const double side = upper ? -1 : 1;
-                    const gpu::vec3 wall = upper ? kHigh : kLow;
-                    const float x = at(kLow.x, kHigh.x, i), y = at(kLow.y, kHigh.y, k);
-                    const std::pair<gpu::vec3, Double3> places[]{{{wall.x, y, at(kLow.z, kHigh.z, i)}, {side, 0, 0}},
-                                                                 {{x, wall.y, at(kLow.z, kHigh.z, k)}, {0, side, 0}},
-                                                                 {{x, y, wall.z}, {0, 0, side}}};
-                    for (const auto& [center, normal] : places)
-                        nodes.push_back(node(center, normal, irradiance(normal)));
-                }
+        const auto add = [&](gpu::vec3 center, Double3 normal) { nodes.push_back(node(center, normal, irradiance(normal))); };
+        for (const bool upper : {false, true})
+        {
+            const double side = upper ? -1 : 1;
+            const gpu::vec3 wall = upper ? kHigh : kLow;
+            add({wall.x, kHigh.y / 2, 0}, {side, 0, 0});
+            add({0, wall.y, 0}, {0, side, 0});
+            add({0, kHigh.y / 2, wall.z}, {0, 0, side});
+        }
         return nodes;
     }
 

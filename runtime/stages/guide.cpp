@@ -1,0 +1,88 @@
+#include "runtime/stages/guide.h"
+
+#include <algorithm>
+
+namespace
+{
+constexpr uint32_t kManyLights = 16; // from here on some of them may be out of sight
+
+bool isBeam(uint32_t kind) { return kind == gpu::kLightDirectional || kind == gpu::kLightEnvironment; }
+
+struct LightGroups
+{
+    gpu::GuideGroups groups{};
+    std::vector<float> other_lights; // by light: share of power of it and those before it, beams with a group left out
+};
+
+LightGroups groupsOf(std::span<const LightShare> lights)
+{
+    LightGroups result;
+    std::ranges::fill(result.groups.beam_lights, gpu::kNone);
+    uint32_t beams = 0;
+    double others = 0;
+    for (uint32_t i = 0; i < lights.size(); ++i)
+    {
+        if (isBeam(lights[i].kind) && beams < gpu::kGuideBeams)
+        {
+            result.groups.beam_lights[beams] = i;
+            result.groups.shares[beams++] = lights[i].pmf;
+        }
+        else
+            others += lights[i].pmf;
+        result.other_lights.push_back(float(others));
+    }
+    result.groups.shares[gpu::kGuideBeams] = float(others);
+    if (result.other_lights.empty())
+        result.other_lights.push_back(0);
+    return result;
+}
+} // namespace
+
+bool GuideStage::helps(const SceneGpu& scene)
+{
+    const auto lights = scene.lightShares();
+    return lights.size() >= kManyLights || std::ranges::any_of(lights, [](const LightShare& l) { return isBeam(l.kind); });
+}
+
+GuideStage::GuideStage(const Device& device, const SceneGpu& scene, uint32_t max_paths)
+    : emit_(device.kernel("guide/emit", scene.constants())), mark_(device.kernel("guide/mark", scene.constants())),
+      score_(device.kernel("guide/score", scene.constants())), learn_(device.kernel("guide/learn")),
+      cumulative_(device.array<float>("guide.cumulative", gpu::kGuideGroups * gpu::kGuideCells)),
+      cells_(device.array<uint32_t>("guide.cells", max_paths)),
+      wanted_(device.array<uint32_t>("guide.wanted", gpu::kGuideVoxels * gpu::kGuideVoxels * gpu::kGuideVoxels)),
+      scores_(device.array<gpu::GuideScore>("guide.scores", gpu::kGuideGroups * gpu::kGuideCells))
+{
+    const LightGroups lights = groupsOf(scene.lightShares());
+    groups_ = device.upload<gpu::GuideGroups>("guide.groups", std::span(&lights.groups, 1));
+    other_lights_ = device.upload<float>("guide.other_lights", lights.other_lights);
+}
+
+void GuideStage::reset(Recorder& rec)
+{
+    has_learned_ = false;
+    rec.clear(scores_);
+    rec.clear(wanted_);
+    rec.run(learn_, gpu::kGuideLearnSize, NoParams{}, {{"Groups", groups_}, {"Scores", scores_}, {"Cumulative", cumulative_}});
+}
+
+void GuideStage::emit(Recorder& rec, const Buffer& starts, const gpu::EmitParams& params) const
+{
+    rec.run(emit_, params.path_count, params,
+            {{"Groups", groups_}, {"Cumulative", cumulative_}, {"OtherLights", other_lights_}, {"Starts", starts}, {"Cells", cells_}});
+}
+
+void GuideStage::mark(Recorder& rec, const RayQueue& queue, uint32_t max_rays, const Buffer& hits)
+{
+    rec.clear(wanted_);
+    rec.run(mark_, max_rays / gpu::kGuideMarkStride, NoParams{},
+            {{"Queue", queue.size}, {"Rays", queue.rays}, {"Hits", hits}, {"Wanted", wanted_}});
+}
+
+void GuideStage::learn(Recorder& rec, const Buffer& photons, const Buffer& flags, uint32_t path_count, uint32_t bounce_limit)
+{
+    has_learned_ = true;
+    rec.run(score_, path_count, gpu::ScoreParams{.path_count = path_count, .bounce_limit = bounce_limit},
+            {{"Groups", groups_}, {"Cumulative", cumulative_}, {"Cells", cells_}, {"Photons", photons}, {"Flags", flags},
+             {"Wanted", wanted_}, {"Scores", scores_}});
+    rec.run(learn_, gpu::kGuideLearnSize, NoParams{}, {{"Groups", groups_}, {"Scores", scores_}, {"Cumulative", cumulative_}});
+}

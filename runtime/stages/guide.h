@@ -1,0 +1,38 @@
+// Guided emission: learns which photons fall where gathering rays look, so that the next ones are not wasted on the roof.
+// After projection maps (Jensen 2001, 5.3), learned rather than drawn; every photon's power is divided by the change of its
+// probability, so that the map stays unbiased whatever was learned.
+#pragma once
+#include "runtime/stages/rays.h"
+#include "shaders/guide/guide.h"
+
+class GuideStage
+{
+public:
+    /// Whether there is something to learn: a beam as wide as the scene, or many lights.
+    static bool helps(const SceneGpu& scene);
+
+    GuideStage(const Device& device, const SceneGpu& scene, uint32_t max_paths);
+
+    /// Forgets everything; the lights' own distributions are used until learn().
+    void reset(Recorder& rec);
+    bool hasLearned() const { return has_learned_; }
+
+    // What was learned last, for tests and views.
+    const Buffer& cells() const { return cells_; }           // uint[path_count]: where each path left; kNone: it did not
+    const Buffer& cumulative() const { return cumulative_; } // float[groups x cells]: probability of a cell and those before it
+    const Buffer& wanted() const { return wanted_; }         // uint[kGuideVoxels^3]: 1 where gathering rays end
+
+    /// `params.path_count` photons leave the lights by what was learned. @param starts gpu::PhotonStart[path_count]
+    void emit(Recorder& rec, const Buffer& starts, const gpu::EmitParams& params) const;
+
+    /// Says where light is wanted from now on: where these rays ended.
+    /// @param hits gpu::Hit[queue capacity]
+    void mark(Recorder& rec, const RayQueue& queue, uint32_t max_rays, const Buffer& hits);
+    /// Learns from the photons of the last emit(). @param photons, flags as PhotonStage gives them
+    void learn(Recorder& rec, const Buffer& photons, const Buffer& flags, uint32_t path_count, uint32_t bounce_limit);
+
+private:
+    bool has_learned_ = false;
+    Kernel emit_, mark_, score_, learn_;
+    Buffer groups_, other_lights_, cumulative_, cells_, wanted_, scores_;
+};

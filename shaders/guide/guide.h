@@ -1,0 +1,46 @@
+// Guided emission of photons. Shared by runtime/stages/guide.cpp, lib/emission.glsl and shaders/**.
+#ifndef SHADERS_GUIDE_H
+#define SHADERS_GUIDE_H
+#include "shaders/photons/photons.h"
+
+GPU_NAMESPACE_BEGIN
+
+// What photons may leave by is divided into groups of cells that are equally likely by the lights' own distributions: each
+// beam (sun or environment, whose photons start on a disc as wide as the scene) is a group whose cells divide that disc,
+// all other lights together are the last one, whose cells divide their power.
+GPU_CONST uint kGuideSide = 32u;
+GPU_CONST uint kGuideCells = kGuideSide * kGuideSide; // of a group
+GPU_CONST uint kGuideBeams = 7u;                      // that have a group of their own at most
+GPU_CONST uint kGuideGroups = kGuideBeams + 1u;       // the last is that of the other lights
+GPU_CONST uint kGuideVoxels = 64u;                    // each way, over the scene's box
+GPU_CONST uint kGuideMarkStride = 4u;                 // of this many gathering rays one tells where light is wanted
+GPU_CONST uint kGuideScoreScale = 16u;                // fixed point
+GPU_CONST uint kGuideGroupSize = 64u;
+GPU_CONST uint kGuideLearnSize = 256u;
+
+GPU_CONST float kGuideUnguided = 0.35f; // part of the photons that leaves by the lights' own distributions: none weighs 3 times as much
+GPU_CONST float kGuideMemory = 0.75f;  // of what was learned before, a frame
+
+struct GuideGroups // which lights they are; fixed for a scene
+{
+    uint beam_lights[kGuideBeams]; // light index; kNone: no such group
+    float shares[kGuideGroups];    // of all power
+};
+GPU_SIZE(GuideGroups, 60);
+
+struct GuideScore
+{
+    uint now;     // photons of this frame that fell where light is wanted, in proportion to their power, fixed point
+    float before; // fading sum over the frames
+};
+GPU_SIZE(GuideScore, 8);
+
+struct ScoreParams
+{
+    uint path_count;
+    uint bounce_limit;
+};
+GPU_SIZE(ScoreParams, 8);
+
+GPU_NAMESPACE_END
+#endif

@@ -1,0 +1,38 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "shaders/lib/voxel.glsl"
+
+// Counts, by the cell that a path left from, the photons that fell where light is wanted. One thread per path.
+
+layout(local_size_x = kGuideGroupSize) in;
+layout(push_constant, scalar) uniform Params { ScoreParams params; };
+
+layout(set = 1, binding = 0, scalar) readonly buffer Groups { GuideGroups groups; };
+layout(set = 1, binding = 1, scalar) readonly buffer Cumulative { float cumulative[]; };
+layout(set = 1, binding = 2, scalar) readonly buffer Cells { uint cells[]; }; // by path; kNone: nothing left
+layout(set = 1, binding = 3, scalar) readonly buffer Photons { Photon photons[]; };
+layout(set = 1, binding = 4, scalar) readonly buffer Flags { uint flags[]; };
+layout(set = 1, binding = 5, scalar) readonly buffer Wanted { uint wanted[]; };
+layout(set = 1, binding = 6, scalar) buffer Scores { GuideScore scores[]; };
+#include "shaders/lib/guide.glsl"
+
+void main()
+{
+    uint path = gl_GlobalInvocationID.x;
+    if (path >= params.path_count || cells[path] == kNone)
+        return;
+    uint count = 0u;
+    for (uint n = 0u; n < params.bounce_limit; ++n)
+    {
+        uint slot = n * params.path_count + path;
+        if (flags[slot] == 0u)
+            break; // a path stores its photons in order
+        count += wanted[voxelAt(photons[slot].position)];
+    }
+    if (count == 0u)
+        return;
+    uint cell = cells[path];
+    float weight = cellShare(cell) / cellProbability(cell);
+    atomicAdd(scores[cell].now, max(1u, uint(float(count * kGuideScoreScale) * weight)));
+}

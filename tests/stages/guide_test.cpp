@@ -1,0 +1,190 @@
+// Guided emission: what it learns, and that the map has no watt more or less for it.
+#include "runtime/stages/guide.h"
+#include "tests/stages/gi_test.h"
+#include "tests/stages/ray_test.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace
+{
+constexpr uint32_t kPaths = 20000, kBounces = 2;
+
+/// A closed room of 4 x 3 x 4 m with a hole of 0.5 x 0.5 m in its roof, beside a wide field, under a sun: of the sun's photons
+/// few find the hole.
+class Guides : public GiTest
+{
+protected:
+    void SetUp() override
+    {
+        GiTest::SetUp();
+        SceneBuilder builder;
+        const uint32_t white = builder.material(lambert(0.5));
+        builder.quad({-20, -0.1f, 20}, {40, 0, 0}, {0, 0, -40}, white);
+        for (const auto& [corner, u, v] : {std::tuple<gpu::vec3, gpu::vec3, gpu::vec3>{{-2, 0, 2}, {4, 0, 0}, {0, 0, -4}},
+                                           {{-2, 0, -2}, {4, 0, 0}, {0, 3, 0}},
+                                           {{-2, 0, 2}, {0, 3, 0}, {4, 0, 0}},
+                                           {{-2, 0, -2}, {0, 3, 0}, {0, 0, 4}},
+                                           {{2, 0, -2}, {0, 0, 4}, {0, 3, 0}},
+                                           {{-2, 3, -2}, {4, 0, 0}, {0, 0, 1.75f}}, // the roof, around the hole
+                                           {{-2, 3, 0.25f}, {4, 0, 0}, {0, 0, 1.75f}},
+                                           {{-2, 3, -0.25f}, {1.75f, 0, 0}, {0, 0, 0.5f}},
+                                           {{0.25f, 3, -0.25f}, {1.75f, 0, 0}, {0, 0, 0.5f}}})
+            builder.quad(corner, u, v, white);
+        builder.light({{"type", "directional"}, {"intensity", 2}}, {{"rotation", {-std::sqrt(0.5), 0, 0, std::sqrt(0.5)}}});
+        builder.light({{"type", "point"}, {"intensity", 0.5}}, {{"translation", {1, 2, 1}}});
+        scene_ = load(builder.compile());
+        rays_.emplace(device(), *scene_);
+        guide_.emplace(device(), *scene_, kPaths);
+        photons_.emplace(device(), *scene_, PhotonKind::kGlobal, kPaths, kBounces);
+        submit(*scene_, [&](Recorder& rec) { guide_->reset(rec); });
+    }
+
+    /// Rays from within the room end all over its walls: there light is wanted.
+    void look()
+    {
+        Random random(3);
+        std::vector<gpu::Ray> rays;
+        for (uint32_t i = 0; i < 40000; ++i)
+        {
+            const Double3 d = normalized({random.between(-1, 1), random.between(-1, -0.1f), random.between(-1, 1)});
+            rays.push_back({.origin = {0.1f, 1, 0.2f}, .t_max = 1e30f, .direction = {float(d.x), float(d.y), float(d.z)}, .path = i});
+        }
+        RayQueue queue(device(), "test.queue", uint32_t(rays.size()));
+        queue.size = sizeBuffer(uint32_t(rays.size()));
+        queue.rays = upload("test.rays", rays);
+        const Buffer hits = device().array<gpu::Hit>("test.hits", rays.size());
+        submit(*scene_,
+               [&](Recorder& rec)
+               {
+                   rays_->closest(rec, queue, hits, 1);
+                   guide_->mark(rec, queue, uint32_t(rays.size()), hits);
+               });
+    }
+
+    /// The photons of one round, from which the guide learns.
+    std::vector<gpu::Photon> emit(uint32_t round)
+    {
+        std::optional<PhotonStage::Output> out;
+        submit(*scene_,
+               [&](Recorder& rec)
+               {
+                   out.emplace(photons_->record(rec, *rays_,
+                                                {.path_count = kPaths,
+                                                 .bounce_limit = kBounces,
+                                                 .specular_depth = 0,
+                                                 .first_path = round * kPaths,
+                                                 .seed = 7,
+                                                 .guide = &*guide_}));
+               });
+        const auto slots = contents<gpu::Photon>(out->photons, out->slot_count);
+        const auto flags = contents<uint32_t>(out->flags, out->slot_count);
+        std::vector<gpu::Photon> stored;
+        for (uint32_t i = 0; i < out->slot_count; ++i)
+            if (flags[i] != 0)
+                stored.push_back(slots[i]);
+        submit(*scene_, [&](Recorder& rec) { guide_->learn(rec, out->photons, out->flags, kPaths, kBounces); });
+        return stored;
+    }
+
+    static bool isFloorOfRoom(const gpu::Photon& p)
+    {
+        return std::abs(p.position.y) < 1e-3 && std::abs(p.position.x) < 2 && std::abs(p.position.z) < 2;
+    }
+
+    std::unique_ptr<SceneGpu> scene_;
+    std::optional<RayStage> rays_;
+    std::optional<GuideStage> guide_;
+    std::optional<PhotonStage> photons_;
+};
+
+TEST_F(Guides, SendPhotonsWhereLightIsWanted)
+{
+    look();
+    const auto before = emit(0);
+    const auto after = emit(1);
+    const auto useful = [](const std::vector<gpu::Photon>& photons) { return std::ranges::count_if(photons, isFloorOfRoom); };
+    fmt::print("  photons on the floor of the room: {} of {}, {} of {} when guided\n", useful(before), before.size(), useful(after),
+               after.size());
+    // The hole is 1/6000 of the sun's disc, and the lamp has 1/400 of the power: nearly all photons were wasted, and 65 %
+    // of them are free to go elsewhere. A cell of the disc is 2.5 m^2 and most of it roof, so not all of those get in.
+    EXPECT_GT(useful(after), 20 * useful(before));
+}
+
+TEST_F(Guides, ChangeNoPower)
+{
+    look();
+    // Irradiance of the floor from the lamp and the sun, known where bounces are left out: the sun's patch has 0.25 m^2.
+    const auto direct = [](const gpu::Photon& p) { return isFloorOfRoom(p) && std::abs(p.position.x) < 0.25f && std::abs(p.position.z) < 0.25f; };
+    (void)emit(0);
+    constexpr uint32_t kRounds = 8;
+    double patch = 0, patch2 = 0, field = 0, field2 = 0;
+    for (uint32_t round = 1; round <= kRounds; ++round)
+    {
+        for (const gpu::Photon& p : emit(round))
+        {
+            const double power = p.power.x;
+            if (direct(p) && unpackedNormal(p.direction).y < -0.9999) // the sun's own
+                patch += power, patch2 += power * power;
+            if (p.position.y < -0.05f && unpackedNormal(p.direction).y < -0.9999)
+                field += power, field2 += power * power;
+        }
+    }
+    const double want_patch = 2 * 0.25, want_field = 2 * (40.0 * 40 - 4 * 4);
+    fmt::print("  sun through the hole: {:.4f} W of {:.4f} W, standard error {:.4f}; on the field {:.1f} W of {:.1f} W, {:.1f}\n",
+               patch / kRounds, want_patch, std::sqrt(patch2) / kRounds, field / kRounds, want_field, std::sqrt(field2) / kRounds);
+    EXPECT_LE(std::sqrt(patch2) / kRounds, 0.05 * want_patch) << "too few photons to tell";
+    EXPECT_NEAR(patch / kRounds, want_patch, 4 * std::sqrt(patch2) / kRounds);
+    EXPECT_NEAR(field / kRounds, want_field, 4 * std::sqrt(field2) / kRounds);
+}
+
+TEST_F(Guides, AreNoHelpWithOneLamp)
+{
+    EXPECT_TRUE(GuideStage::helps(*scene_));
+    SceneBuilder builder;
+    builder.box({-1, 0, -1}, {1, 1, 1}, builder.material(lambert(0.5)), true);
+    builder.light({{"type", "point"}, {"intensity", 1}}, {{"translation", {0, 0.5, 0}}});
+    EXPECT_FALSE(GuideStage::helps(*load(builder.compile())));
+}
+
+/// score and learn against sums over the photons, by cell.
+TEST_F(Guides, LearnTheSharesOfUsefulPhotonsByCell)
+{
+    look();
+    const auto distribution = [&] { return contents<float>(guide_->cumulative(), gpu::kGuideGroups * gpu::kGuideCells); };
+    const std::vector<float> start = distribution();
+    const auto wanted = contents<uint32_t>(guide_->wanted(), gpu::kGuideVoxels * gpu::kGuideVoxels * gpu::kGuideVoxels);
+    std::optional<PhotonStage::Output> out;
+    submit(*scene_,
+           [&](Recorder& rec)
+           {
+               out.emplace(photons_->record(rec, *rays_,
+                                            {.path_count = kPaths, .bounce_limit = kBounces, .specular_depth = 0, .first_path = 0, .seed = 7, .guide = &*guide_}));
+               guide_->learn(rec, out->photons, out->flags, kPaths, kBounces);
+           });
+    const auto photons = contents<gpu::Photon>(out->photons, out->slot_count);
+    const auto flags = contents<uint32_t>(out->flags, out->slot_count);
+    const gpu::SceneInfo& info = scene_->info();
+    const auto voxel = [&](gpu::vec3 p)
+    {
+        const auto along = [](float x, float low, float high) { return uint32_t(std::clamp((x - low) / (high - low) * 64, 0.0f, 63.0f)); };
+        return (along(p.z, info.bounds_min.z, info.bounds_max.z) * 64 + along(p.y, info.bounds_min.y, info.bounds_max.y)) * 64 +
+               along(p.x, info.bounds_min.x, info.bounds_max.x);
+    };
+    const auto cells = contents<uint32_t>(guide_->cells(), kPaths);
+    std::vector<double> scores(start.size());
+    double total = 0;
+    for (uint32_t path = 0; path < kPaths; ++path)
+        for (uint32_t n = 0; n < kBounces; ++n)
+            if (const uint32_t slot = n * kPaths + path; flags[slot] != 0 && wanted[voxel(photons[slot].position)] != 0)
+                ++scores[cells[path]], ++total; // nothing was guided yet: all weigh 1
+    ASSERT_GT(total, 20);
+    const std::vector<float> learned = distribution();
+    EXPECT_EQ(learned.back(), 1);
+    for (size_t i = 0; i < learned.size(); ++i)
+    {
+        const double share = start[i] - (i > 0 ? start[i - 1] : 0), got = learned[i] - (i > 0 ? learned[i - 1] : 0);
+        EXPECT_NEAR(got, gpu::kGuideUnguided * share + (1 - gpu::kGuideUnguided) * scores[i] / total, 1e-6) << "cell " << i;
+    }
+}
+} // namespace
