@@ -14,7 +14,7 @@ CutStage::CutStage(const Device& device, uint32_t max_photons)
       members_(device.array<uint32_t>("cut.members", 2 * uint64_t(max_photons))),
       finals_(device.array<gpu::CutNode>("cut.finals", 2 * uint64_t(max_photons))), size_(device.array<gpu::QueueSize>("cut.size", 1)),
       ids_(device.array<uint32_t>("cut.ids", max_photons)), spheres_(device.array<gpu::vec4>("cut.spheres", max_photons)),
-      nodes_(device.array<gpu::CutNode>("cut.nodes", max_photons))
+      nodes_(device.texelArray<gpu::CutNode>("cut.nodes", max_photons))
 {
 }
 

@@ -6,12 +6,12 @@
 class InterpolateStage
 {
 public:
-    InterpolateStage(const Device& device, const SceneGpu& scene, uint32_t max_samples);
+    InterpolateStage(const Device& device, uint32_t max_samples);
 
     struct Input
     {
-        const Buffer& points;   // gpu::ShadingPoint[point_count]
-        const Buffer& radiance; // vec3[point_count], grows by the indirect diffuse light
+        const Buffer& diffuse_points; // gpu::DiffusePoint[point_count]
+        const Buffer& radiance;       // vec3[point_count], grows by the indirect diffuse light
         uint32_t point_count;
         float alpha;  // of Eq. 2, per metre, where no sample is accepted
         float radius; // metres: how far a sample may be there

@@ -7,6 +7,7 @@ PrimaryStage::PrimaryStage(const Device& device, const SceneGpu& scene, uint32_t
       next_queue_(device, "primary.next_queue", max_pixels),
       hits_(device.array<gpu::Hit>("primary.hits", max_pixels)),
       points_(device.array<gpu::ShadingPoint>("primary.points", max_pixels)),
+      diffuse_points_(device.texelArray<gpu::DiffusePoint>("primary.diffuse_points", max_pixels)),
       radiance_(device.array<gpu::vec3>("primary.radiance", max_pixels))
 {
 }
@@ -31,9 +32,9 @@ PrimaryStage::Output PrimaryStage::record(Recorder& rec, const RayStage& rays, c
         rays.reset(rec, next->size);
         rec.runIndirect(chain_, queue->size, 0, params,
                         {{"Queue", queue->size}, {"Rays", queue->rays}, {"Hits", hits_}, {"Points", points_}, {"Radiance", radiance_},
-                         {"NextQueue", next->size}, {"NextRays", next->rays}});
+                         {"NextQueue", next->size}, {"NextRays", next->rays}, {"DiffusePoints", diffuse_points_}});
         rays.close(rec, next->size);
         std::swap(queue, next);
     }
-    return {.points = points_, .radiance = radiance_};
+    return {.points = points_, .diffuse_points = diffuse_points_, .radiance = radiance_};
 }

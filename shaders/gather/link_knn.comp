@@ -16,8 +16,8 @@ layout(set = 1, binding = 4, scalar) buffer NextQueue { QueueSize next_queue; };
 layout(set = 1, binding = 5, scalar) writeonly buffer NextRays { Ray next_rays[]; };
 layout(set = 1, binding = 6, scalar) buffer GatheredBlock { Gathered gathered[]; };
 layout(set = 1, binding = 7, scalar) readonly buffer Size { QueueSize size; };
-layout(set = 1, binding = 8, scalar) readonly buffer TreeNodes { TreeNode tree_nodes[]; };
-layout(set = 1, binding = 9, scalar) readonly buffer Photons { Photon photons[]; };
+layout(set = 1, binding = 8) uniform usamplerBuffer TreeNodes;
+layout(set = 1, binding = 9) uniform usamplerBuffer Photons;
 #include "shaders/lib/density.glsl"
 
 vec3 irradianceAt(vec3 x, vec3 n)

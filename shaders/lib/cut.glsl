@@ -1,10 +1,16 @@
-// Reading the illumination cut. The kernel declares `buffer CutSize { QueueSize cut_size; }`, `buffer TreeNodes` (of the cut)
-// and `buffer CutNodes { CutNode cut_nodes[]; }` before it includes this. Functions only.
+// Reading the illumination cut. The kernel declares `buffer CutSize { QueueSize cut_size; }` and the usamplerBuffers
+// TreeNodes (of the cut) and CutNodes before it includes this. Functions only.
 #ifndef LIB_CUT_GLSL
 #define LIB_CUT_GLSL
 #include "shaders/cut/cut.h"
 #include "shaders/lib/math.glsl"
 #include "shaders/lib/tree.glsl"
+
+CutNode loadCutNode(uint index)
+{
+    uvec4 a = texelFetch(CutNodes, int(2u * index)), b = texelFetch(CutNodes, int(2u * index + 1u));
+    return CutNode(uintBitsToFloat(a.xyz), uintBitsToFloat(a.w), uintBitsToFloat(b.xyz), b.w);
+}
 
 /// The nearest cut node that faces the same way, within sqrt(radius2); kNone where there is none.
 uint nearestCutNode(vec3 x, vec3 n, float radius2)
@@ -15,8 +21,8 @@ uint nearestCutNode(vec3 x, vec3 n, float radius2)
     while (nextRange(x, radius2, first, end))
         for (uint i = first; i < end; ++i)
         {
-            vec3 normal = unpackNormal(cut_nodes[i].normal);
-            float distance2 = surfaceDistance2(cut_nodes[i].center - x, normal);
+            vec3 normal = unpackNormal(loadCutNode(i).normal);
+            float distance2 = surfaceDistance2(loadCutNode(i).center - x, normal);
             if (distance2 < radius2 && dot(n, normal) > 0.2)
             {
                 radius2 = distance2;
@@ -32,7 +38,7 @@ vec3 nearestCutIrradiance(vec3 x, vec3 n, float radius2)
     uint nearest = nearestCutNode(x, n, radius2);
     if (nearest == kNone)
         return vec3(0.0);
-    return cut_nodes[nearest].irradiance;
+    return loadCutNode(nearest).irradiance;
 }
 
 // Where nodes cover a surface evenly their weights sum to more than 1 (pi / 2 for a lattice). Below this the place lies at
@@ -50,7 +56,7 @@ vec3 cutIrradiance(vec3 x, vec3 n)
     while (nextRange(x, 0.0, first, end))
         for (uint i = first; i < end; ++i)
         {
-            CutNode node = cut_nodes[i];
+            CutNode node = loadCutNode(i);
             vec3 normal = unpackNormal(node.normal);
             float distance2 = surfaceDistance2(node.center - x, normal);
             float weight = max(0.0, 1.0 - distance2 / square(node.support)) * max(0.0, dot(n, normal));

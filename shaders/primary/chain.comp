@@ -17,11 +17,13 @@ layout(set = 1, binding = 3, scalar) buffer Points { ShadingPoint points[]; };
 layout(set = 1, binding = 4, scalar) buffer Radiance { vec3 radiance[]; };
 layout(set = 1, binding = 5, scalar) buffer NextQueue { QueueSize next_queue; };
 layout(set = 1, binding = 6, scalar) writeonly buffer NextRays { Ray next_rays[]; };
+layout(set = 1, binding = 7, scalar) writeonly buffer DiffusePoints { DiffusePoint diffuse_points[]; };
 
 // Until a chain is finished its point holds the throughput so far and, in `slot`, the medium the ray is in.
 void finish(uint path, vec3 light)
 {
     points[path].slot = kNone;
+    diffuse_points[path].reflectance = vec3(0.0);
     if (params.depth == 0u)
         radiance[path] = light;
     else
@@ -61,6 +63,8 @@ void main()
     {
         throughput /= b.smooth_specular ? p.diffuse : 1.0;
         points[path] = ShadingPoint(s.position, hit.slot, direction, params.depth, throughput, hit.barycentrics);
+        vec3 reflectance = throughput * diffuseReflectance(b, max(0.0, -dot(s.normal, direction)));
+        diffuse_points[path] = DiffusePoint(s.position, unitToOctahedral(s.smooth_normal), reflectance);
         return;
     }
     BsdfSample next = sampleBsdf(b, wo, choice, vec2(0.5));
