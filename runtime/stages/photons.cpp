@@ -10,7 +10,7 @@ PhotonStage::PhotonStage(const Device& device, const SceneGpu& scene, PhotonKind
     : kind_(kind), has_specular_(scene.hasFeature(gpu::kFeatureSpecular)), has_targets_(scene.info().caustic_target_count > 0),
       emit_(device.kernel("photons/emit", scene.constants())), scatter_(device.kernel("photons/scatter", scene.constants())),
       queue_(device, "photons.queue", max_paths), next_queue_(device, "photons.next_queue", max_paths),
-      hits_(device.array<gpu::Hit>("photons.hits", max_paths)),
+      hits_(device.texelArray<gpu::Hit>("photons.hits", max_paths)),
       states_(device.array<gpu::PhotonState>("photons.states", max_paths)),
       photons_(device.array<gpu::Photon>("photons.photons", uint64_t(max_paths) * max_bounces)),
       flags_(device.array<uint32_t>("photons.flags", uint64_t(max_paths) * max_bounces))

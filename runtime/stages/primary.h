@@ -22,6 +22,7 @@ public:
     Output record(Recorder& rec, const RayStage& rays, const Input& in) const;
 
 private:
+    bool has_specular_;
     Kernel generate_, chain_;
     RayQueue queue_, next_queue_;
     Buffer hits_, points_, diffuse_points_, radiance_;

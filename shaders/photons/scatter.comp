@@ -12,24 +12,26 @@ layout(local_size_x = kRaysGroupSize) in;
 layout(push_constant, scalar) uniform Params { ScatterParams params; };
 
 layout(set = 1, binding = 0, scalar) readonly buffer Queue { QueueSize queue; };
-layout(set = 1, binding = 1, scalar) readonly buffer Rays { Ray rays[]; };
-layout(set = 1, binding = 2, scalar) readonly buffer Hits { Hit hits[]; };
+layout(set = 1, binding = 1) uniform usamplerBuffer Rays;
+layout(set = 1, binding = 2) uniform usamplerBuffer Hits;
 layout(set = 1, binding = 3, scalar) buffer States { PhotonState states[]; };
 layout(set = 1, binding = 4, scalar) writeonly buffer Photons { Photon photons[]; };
 layout(set = 1, binding = 5, scalar) writeonly buffer Flags { uint flags[]; };
 layout(set = 1, binding = 6, scalar) buffer NextQueue { QueueSize next_queue; };
 layout(set = 1, binding = 7, scalar) writeonly buffer NextRays { Ray next_rays[]; };
+#include "shaders/lib/hit.glsl"
+#include "shaders/lib/ray.glsl"
 
 bool finite(vec3 v) { return !any(isnan(v)) && !any(isinf(v)); }
 
 void main()
 {
     uint i = gl_GlobalInvocationID.x;
-    if (i >= queue.count || hits[i].slot == kNone)
+    if (i >= queue.count || loadHit(i).slot == kNone)
         return;
-    uint path = rays[i].path;
-    vec3 direction = rays[i].direction;
-    Hit hit = hits[i];
+    uint path = loadRay(i).path;
+    vec3 direction = loadRay(i).direction;
+    Hit hit = loadHit(i);
     PhotonState state = states[path];
     Surface s = surfaceAt(hit.slot, hit.barycentrics, direction);
     SurfaceMaterial m = materialAt(s);
