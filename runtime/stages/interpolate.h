@@ -22,7 +22,9 @@ public:
     const Buffer& statistics() const { return statistics_; } // gpu::InterpolateStatistics of the last frame
 
 private:
-    Kernel reorder_, apply_;
+    Kernel reorder_;
+    uint32_t run_; // pixels a thread
+    Kernel apply_;
     Tree tree_;
     Buffer sorted_, statistics_;
 };

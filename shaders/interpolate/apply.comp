@@ -7,7 +7,9 @@
 #include "shaders/lib/variation.glsl"
 
 // Indirect diffuse light of every pixel from the samples whose support holds its shading point. One thread per run of
-// kInterpolateRun pixels: they share the search, which finds what any of them needs, and the loads.
+// kRun neighbouring pixels: they share one search, which finds what any of them needs, and what it loads.
+
+layout(constant_id = 0) const uint kRun = 1u;
 
 layout(local_size_x = kRaysGroupSize) in;
 layout(push_constant, scalar) uniform Params { InterpolateParams params; };
@@ -44,15 +46,15 @@ float sampleWeight(SampleTexels s, vec3 x, vec3 n)
 }
 
 // The pixels of a run. Loops over them are unrolled: arrays that stay in registers.
-vec3 x[kInterpolateRun], n[kInterpolateRun], reflectance[kInterpolateRun];
-vec4 sum[kInterpolateRun]; // of weighted irradiance and of weights
+vec3 x[kRun], n[kRun], reflectance[kRun];
+vec4 sum[kRun]; // of weighted irradiance and of weights
 
 /// Loads the run that starts at `pixel`; between low and high lies what of it is diffuse. @return whether anything is
 bool loadRun(uint pixel, out vec3 low, out vec3 high)
 {
     low = vec3(kInfinity);
     high = vec3(-kInfinity);
-    [[unroll]] for (uint k = 0u; k < kInterpolateRun; ++k)
+    [[unroll]] for (uint k = 0u; k < kRun; ++k)
     {
         DiffusePoint point = loadDiffusePoint(min(pixel + k, params.point_count - 1u));
         x[k] = point.position;
@@ -71,10 +73,10 @@ bool loadRun(uint pixel, out vec3 low, out vec3 high)
 /// Gives the pixels that no sample accepts the irradiance of the sample of least variation within params.radius.
 void takeNearest(vec3 low, vec3 high)
 {
-    float best[kInterpolateRun];
+    float best[kRun];
     float farthest = params.alpha * params.radius + 2.0;
     uint missing = 0u;
-    [[unroll]] for (uint k = 0u; k < kInterpolateRun; ++k)
+    [[unroll]] for (uint k = 0u; k < kRun; ++k)
     {
         bool is_missing = sum[k].w == 0.0 && reflectance[k] != vec3(0.0);
         best[k] = is_missing ? farthest : -1.0;
@@ -89,7 +91,7 @@ void takeNearest(vec3 low, vec3 high)
         {
             SampleTexels s = loadSample(i);
             farthest = 0.0;
-            [[unroll]] for (uint k = 0u; k < kInterpolateRun; ++k)
+            [[unroll]] for (uint k = 0u; k < kRun; ++k)
             {
                 float eps = geometricVariation(params.alpha, x[k], n[k], s.position, s.normal);
                 if (eps < best[k])
@@ -101,7 +103,7 @@ void takeNearest(vec3 low, vec3 high)
             }
         }
     uint unlit = 0u;
-    [[unroll]] for (uint k = 0u; k < kInterpolateRun; ++k)
+    [[unroll]] for (uint k = 0u; k < kRun; ++k)
         unlit += uint(sum[k].w == 0.0 && reflectance[k] != vec3(0.0));
     atomicAdd(statistics.fallbacks, missing);
     atomicAdd(statistics.unlit, unlit);
@@ -109,7 +111,7 @@ void takeNearest(vec3 low, vec3 high)
 
 void main()
 {
-    uint pixel = gl_GlobalInvocationID.x * kInterpolateRun;
+    uint pixel = gl_GlobalInvocationID.x * kRun;
     vec3 low, high;
     if (pixel >= params.point_count || !loadRun(pixel, low, high))
         return;
@@ -119,11 +121,11 @@ void main()
         for (uint i = first; i < end; ++i)
         {
             SampleTexels s = loadSample(i);
-            [[unroll]] for (uint k = 0u; k < kInterpolateRun; ++k)
+            [[unroll]] for (uint k = 0u; k < kRun; ++k)
                 sum[k] += sampleWeight(s, x[k], n[k]) * vec4(s.irradiance, 1.0);
         }
     takeNearest(low, high);
-    [[unroll]] for (uint k = 0u; k < kInterpolateRun; ++k)
+    [[unroll]] for (uint k = 0u; k < kRun; ++k)
         if (sum[k].w > 0.0 && reflectance[k] != vec3(0.0))
         {
             vec3 shown = params.white != 0u ? vec3(notEqual(reflectance[k], vec3(0.0))) : reflectance[k];

@@ -5,9 +5,6 @@
 
 GPU_NAMESPACE_BEGIN
 
-// Neighbouring pixels that one thread serves with one search: what it loads it uses several times.
-GPU_CONST uint kInterpolateRun = 4u;
-
 struct SampleTexels // a Sample as interpolation reads it, three texels
 {
     vec3 position; // metres

@@ -14,19 +14,13 @@ layout(push_constant, scalar) uniform Params { ClusterParams params; };
 
 layout(set = 1, binding = 0, scalar) readonly buffer Size { QueueSize size; };
 layout(set = 1, binding = 1, scalar) readonly buffer Points { SamplePoint points[]; };
-layout(set = 1, binding = 2) uniform usamplerBuffer Clusters;
+layout(set = 1, binding = 2, scalar) readonly buffer Clusters { Cluster clusters[]; };
 layout(set = 1, binding = 3) uniform usamplerBuffer TreeNodes;
 layout(set = 1, binding = 4, scalar) readonly buffer Order { uint order[]; };
 layout(set = 1, binding = 5, scalar) buffer Sums { ClusterSums sums[]; };
 layout(set = 1, binding = 6, scalar) writeonly buffer Owners { uvec2 owners[]; }; // by point: cluster, bits of eps
 layout(set = 1, binding = 7, scalar) readonly buffer Seeds { uint seeds[]; };     // by cluster: the point it started at, ascending
 #include "shaders/lib/tree.glsl"
-
-Cluster loadCluster(uint index)
-{
-    uvec4 a = texelFetch(Clusters, int(index));
-    return Cluster(uintBitsToFloat(a.xyz), a.w);
-}
 
 /// The cluster whose seed is next to the point in Z-order: near enough that the search around it is short.
 uint neighbourInOrder(uint point)
@@ -54,7 +48,7 @@ void main()
     vec3 x = points[p].position;
     vec3 n = unpackNormal(points[p].normal);
     uint owner = neighbourInOrder(p);
-    float best = geometricVariation(params.alpha, x, n, loadCluster(owner).position, unpackNormal(loadCluster(owner).normal));
+    float best = geometricVariation(params.alpha, x, n, clusters[owner].position, unpackNormal(clusters[owner].normal));
     float radius2 = square(best / params.alpha);
     uint first, end;
     beginRanges(size.count);
@@ -62,7 +56,7 @@ void main()
         for (uint i = first; i < end; ++i)
         {
             uint cluster = order[i];
-            float eps = geometricVariation(params.alpha, x, n, loadCluster(cluster).position, unpackNormal(loadCluster(cluster).normal));
+            float eps = geometricVariation(params.alpha, x, n, clusters[cluster].position, unpackNormal(clusters[cluster].normal));
             if (eps < best || (eps == best && cluster < owner))
             {
                 best = eps;
@@ -79,7 +73,7 @@ void main()
         atomicAdd(sums[owner].position[axis], position[axis]);
         atomicAdd(sums[owner].normal[axis], normal[axis]);
     }
-    vec3 d = x - loadCluster(owner).position;
+    vec3 d = x - clusters[owner].position;
     atomicAdd(sums[owner].count, 1u);
     atomicMin(sums[owner].least_eps, floatBitsToUint(best));
     atomicAdd(sums[owner].distance, uint(min(1.0, length(d) / maxComponent(extent)) * params.fixed_scale));
