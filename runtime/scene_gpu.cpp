@@ -32,7 +32,8 @@ uint32_t materialFeatures(const gpu::Material& material)
 {
     const auto if_used = [](uint32_t texture, uint32_t feature) { return texture != gpu::kNone ? feature : 0u; };
     const bool dielectric_reflects = material.specular > 0 && material.metallic < 1;
-    return (material.transmission > 0 ? gpu::kFeatureTransmission : 0u) | (material.metallic > 0 ? gpu::kFeatureMetal : 0u) |
+    return (material.transmission > 0 ? gpu::kFeatureTransmission : 0u) |
+           (material.metallic > 0 ? gpu::kFeatureMetal : 0u) |
            (dielectric_reflects || material.metallic > 0 || material.transmission > 0 ? gpu::kFeatureSpecular : 0u) |
            if_used(material.base_color_texture, gpu::kFeatureBaseColorMaps) |
            if_used(material.normal_texture, gpu::kFeatureNormalMaps) |
@@ -48,9 +49,11 @@ uint32_t sceneFeatures(const package::Package& package)
     uint32_t features = (package.meta().has_alpha() ? gpu::kFeatureAlpha : 0u) | (package.meta().has_thin() ? gpu::kFeatureThin : 0u);
     for (const gpu::Material& material : package.materials())
         features |= materialFeatures(material);
-    if (std::ranges::any_of(package.textureRefs(), [](const gpu::TextureRef& ref) { return (ref.sampling & gpu::kSampleUv1) != 0; }))
+    if (std::ranges::any_of(package.textureRefs(),
+                            [](const gpu::TextureRef& ref) { return (ref.sampling & gpu::kSampleUv1) != 0; }))
         features |= gpu::kFeatureSecondUv;
-    if (std::ranges::any_of(package.vertexAttributes(), [](const gpu::VertexAttributes& v) { return v.color.x != kWhite || v.color.y != kWhite; }))
+    if (std::ranges::any_of(package.vertexAttributes(),
+                            [](const gpu::VertexAttributes& v) { return v.color.x != kWhite || v.color.y != kWhite; }))
         features |= gpu::kFeatureVertexColors;
     for (const gpu::Light& light : package.lights())
         features |= light.kind == gpu::kLightEnvironment ? gpu::kFeatureEnvironment

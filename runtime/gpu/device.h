@@ -34,8 +34,9 @@ public:
     {
         return buffer(name, (count > 0 ? count : 1) * sizeof(T), Placement::kDevice);
     }
-    /// The same for what some kernel reads as a `usamplerBuffer`: software Vulkan fetches a texel with one wide load, where a
-    /// storage block costs it a bounds-checked load a word. Aborts above limits().maxTexelBufferElements texels.
+    /// The same for what some kernel reads as a `usamplerBuffer`: software Vulkan fetches a texel with one wide load,
+    /// where a storage block costs it a bounds-checked load a word. Aborts above limits().maxTexelBufferElements
+    /// texels.
     template <typename T>
     Buffer texelArray(std::string_view name, uint64_t count) const
     {
