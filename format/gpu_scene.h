@@ -194,6 +194,9 @@ GPU_CONST uint kFeatureEmissiveMaps = 256u;
 GPU_CONST uint kFeatureRareMaps = 512u;       // transmission, specular, specular colour
 GPU_CONST uint kFeatureMetal = 1024u;         // materials with metallic > 0
 GPU_CONST uint kFeatureSpecular = 2048u;      // materials with any specular reflection or transmission
+GPU_CONST uint kFeatureBaseColorMaps = 4096u;
+GPU_CONST uint kFeatureSecondUv = 8192u;      // textures that use TEXCOORD_1
+GPU_CONST uint kFeatureVertexColors = 16384u; // vertices that are not white
 
 struct SceneInfo // uniform block: what every kernel may need to know of the scene
 {

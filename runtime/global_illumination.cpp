@@ -28,6 +28,7 @@ struct GlobalIllumination::Frame
     const gpu::CameraParams& camera;
     const Settings& settings;
     const Buffer& points;   // gpu::ShadingPoint[pixel_count]
+    const Buffer& diffuse_points; // gpu::DiffusePoint[pixel_count]
     const Buffer& radiance; // vec3[pixel_count]
     uint32_t pixel_count;
     uint32_t index; // in a standing picture
@@ -64,7 +65,7 @@ GlobalIllumination::GlobalIllumination(const Device& device, const SceneGpu& sce
       photon_tree_(device, "photon_tree", settings.photon_count * settings.photon_bounces),
       caustic_tree_(device, "caustic_tree", settings.caustic_photons * kCausticBounces),
       cut_(device, scene, settings.photon_count * settings.photon_bounces), samples_(device, scene, width, height, settings.sample_count),
-      gather_(device, scene, settings.sample_count, settings.gather_rays), interpolate_(device, scene, settings.sample_count),
+      gather_(device, scene, settings.sample_count, settings.gather_rays), interpolate_(device, settings.sample_count),
       glossy_(device, scene, width * height), caustics_(device, scene), views_(device, scene, width * height)
 {
     const gpu::SceneInfo& info = scene.info();
@@ -84,6 +85,7 @@ const Buffer& GlobalIllumination::record(Recorder& rec, const RayStage& rays, co
                       .camera = camera,
                       .settings = settings,
                       .points = primary.points,
+                      .diffuse_points = primary.diffuse_points,
                       .radiance = primary.radiance,
                       .pixel_count = width_ * height_,
                       .index = camera.first_sample,
@@ -183,7 +185,7 @@ SamplesStage::Output GlobalIllumination::recordSamples(const Frame& frame) const
 {
     const Settings& settings = frame.settings;
     return samples_.record(frame.rec, frame.rays,
-                           {.shading_points = frame.points,
+                           {.diffuse_points = frame.diffuse_points,
                             .mode = SamplesMode(settings.samples_mode),
                             .budget = settings.sample_count,
                             .iterations = settings.sample_iterations,
@@ -217,7 +219,7 @@ void GlobalIllumination::recordIndirect(const Frame& frame, const PhotonTreeStag
     }
     const auto scope = frame.rec.scope("interpolate");
     interpolate_.record(frame.rec, samples,
-                        {.points = frame.points,
+                        {.diffuse_points = frame.diffuse_points,
                          .radiance = frame.radiance,
                          .point_count = frame.pixel_count,
                          .alpha = settings.sample_alpha * 2 / longest_side_,

@@ -23,7 +23,8 @@ bool sameView(const gpu::CameraParams& a, const gpu::CameraParams& b)
 
 Status Renderer::checkSize(const Device& device, uint32_t width, uint32_t height, Mode mode, const Settings& settings)
 {
-    const uint64_t range = device.limits().maxStorageBufferRange;
+    const uint64_t range =
+        std::min<uint64_t>(device.limits().maxStorageBufferRange, device.limits().maxTexelBufferElements * kTexelBytes);
     const uint64_t most = range / kLargestPixelBytes;
     if (uint64_t(width) * height <= most)
         return mode == Mode::kGi ? GlobalIllumination::checkCounts(range, settings) : Success{};

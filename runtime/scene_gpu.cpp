@@ -4,7 +4,7 @@
 
 namespace
 {
-constexpr uint64_t kTexelBytes = 16; // RGBA32UI
+constexpr uint32_t kWhite = 0x3c003c00; // two halfs of 1
 
 gpu::vec3 toVec3(const lumicut::fb::Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
@@ -32,8 +32,10 @@ uint32_t materialFeatures(const gpu::Material& material)
 {
     const auto if_used = [](uint32_t texture, uint32_t feature) { return texture != gpu::kNone ? feature : 0u; };
     const bool dielectric_reflects = material.specular > 0 && material.metallic < 1;
-    return (material.transmission > 0 ? gpu::kFeatureTransmission : 0u) | (material.metallic > 0 ? gpu::kFeatureMetal : 0u) |
+    return (material.transmission > 0 ? gpu::kFeatureTransmission : 0u) |
+           (material.metallic > 0 ? gpu::kFeatureMetal : 0u) |
            (dielectric_reflects || material.metallic > 0 || material.transmission > 0 ? gpu::kFeatureSpecular : 0u) |
+           if_used(material.base_color_texture, gpu::kFeatureBaseColorMaps) |
            if_used(material.normal_texture, gpu::kFeatureNormalMaps) |
            if_used(material.metallic_roughness_texture, gpu::kFeatureMetallicRoughnessMaps) |
            if_used(material.emissive_texture, gpu::kFeatureEmissiveMaps) |
@@ -47,6 +49,12 @@ uint32_t sceneFeatures(const package::Package& package)
     uint32_t features = (package.meta().has_alpha() ? gpu::kFeatureAlpha : 0u) | (package.meta().has_thin() ? gpu::kFeatureThin : 0u);
     for (const gpu::Material& material : package.materials())
         features |= materialFeatures(material);
+    if (std::ranges::any_of(package.textureRefs(),
+                            [](const gpu::TextureRef& ref) { return (ref.sampling & gpu::kSampleUv1) != 0; }))
+        features |= gpu::kFeatureSecondUv;
+    if (std::ranges::any_of(package.vertexAttributes(),
+                            [](const gpu::VertexAttributes& v) { return v.color.x != kWhite || v.color.y != kWhite; }))
+        features |= gpu::kFeatureVertexColors;
     for (const gpu::Light& light : package.lights())
         features |= light.kind == gpu::kLightEnvironment ? gpu::kFeatureEnvironment
                     : light.kind >= gpu::kLightTriangle  ? gpu::kFeatureTriangleLights
@@ -61,26 +69,30 @@ Result<std::unique_ptr<SceneGpu>> SceneGpu::create(const Device& device, const p
     for (const gpu::Light& light : package.lights())
         scene->light_shares_.push_back({.kind = light.kind, .pmf = light.pmf});
     std::optional<Error> too_large;
-    const auto add = [&](const char* name, auto data)
+    const auto fits = [&](const char* name, auto data, uint64_t limit)
     {
-        const bool texels = scene->buffers_.size() <= gpu::kLightsBinding - gpu::kBvhNodesBinding;
-        const uint64_t limit = texels ? uint64_t(device.limits().maxTexelBufferElements) * kTexelBytes : device.limits().maxStorageBufferRange;
         if (data.size_bytes() > limit)
-        {
             too_large = Error{ExitCode::kDevice, fmt::format("the scene's {} take {} MiB, more than the {} MiB that a buffer may "
                                                              "have on {}; try another device or a smaller scene", name,
                                                              data.size_bytes() >> 20, limit >> 20, device.name())};
-            scene->buffers_.emplace_back();
-            return;
-        }
-        scene->buffers_.push_back(device.upload(fmt::format("scene.{}", name), data));
+        return data.size_bytes() <= limit;
     };
-    add("BVH nodes", package.bvhNodes()); // in the order of the bindings in gpu_scene.h
-    add("BVH triangles", package.bvhTriangles());
-    add("triangles", package.triangles());
-    add("vertices", package.vertexAttributes());
-    add("materials", package.materials());
-    add("lights", package.lights());
+    const auto addTexels = [&](const char* name, auto data)
+    {
+        const bool fit = fits(name, data, uint64_t(device.limits().maxTexelBufferElements) * kTexelBytes);
+        scene->buffers_.push_back(fit ? device.uploadTexels(fmt::format("scene.{}", name), data) : Buffer());
+    };
+    const auto add = [&](const char* name, auto data)
+    {
+        const bool fit = fits(name, data, device.limits().maxStorageBufferRange);
+        scene->buffers_.push_back(fit ? device.upload(fmt::format("scene.{}", name), data) : Buffer());
+    };
+    addTexels("BVH nodes", package.bvhNodes()); // in the order of the bindings in gpu_scene.h
+    addTexels("BVH triangles", package.bvhTriangles());
+    addTexels("triangles", package.triangles());
+    addTexels("vertices", package.vertexAttributes());
+    addTexels("materials", package.materials());
+    addTexels("lights", package.lights());
     add("texture references", package.textureRefs());
     add("light aliases", package.lightAliases());
     add("environment texels", package.environmentTexels());
@@ -98,8 +110,6 @@ Result<std::unique_ptr<SceneGpu>> SceneGpu::create(const Device& device, const p
 SceneGpu::~SceneGpu()
 {
     device_.waitIdle();
-    for (const VkBufferView view : texel_views_)
-        vkDestroyBufferView(device_.handle(), view, nullptr);
     vkDestroyDescriptorPool(device_.handle(), pool_, nullptr);
     vkDestroySampler(device_.handle(), texture_sampler_, nullptr);
     vkDestroySampler(device_.handle(), environment_sampler_, nullptr);
@@ -159,8 +169,6 @@ void SceneGpu::createDescriptorSet()
 
     constexpr uint32_t kTexelBufferCount = gpu::kLightsBinding - gpu::kBvhNodesBinding + 1;
     const uint32_t storage_count = uint32_t(buffers_.size()) - kTexelBufferCount;
-    for (uint32_t b = 0; b < kTexelBufferCount; ++b)
-        texel_views_.push_back(device_.texelView(buffers_[b], VK_FORMAT_R32G32B32A32_UINT));
     const std::array sizes{
         VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1},
         VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, kTexelBufferCount},
@@ -203,7 +211,7 @@ void SceneGpu::createDescriptorSet()
     for (uint32_t b = 0; b < kTexelBufferCount; ++b)
     {
         write(gpu::kBvhNodesBinding + b, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, 1, nullptr, nullptr);
-        writes.back().pTexelBufferView = &texel_views_[b];
+        writes.back().pTexelBufferView = &buffers_[b].texels();
     }
     for (uint32_t b = kTexelBufferCount; b < buffers_.size(); ++b)
         write(gpu::kBvhNodesBinding + b, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, &buffers[b + 1], nullptr);

@@ -46,8 +46,7 @@ private:
     std::vector<LightShare> light_shares_;
     std::array<uint32_t, 2> constants_{};
     Buffer info_buffer_;
-    std::vector<Buffer> buffers_;           // by binding, kBvhNodesBinding first
-    std::vector<VkBufferView> texel_views_; // of the first of them, up to kLightsBinding
+    std::vector<Buffer> buffers_; // by binding, kBvhNodesBinding first
     std::vector<Image> pages_;    // kTexturePageCount of them, unused ones 1 x 1 white
     Image environment_;
     VkSampler texture_sampler_ = VK_NULL_HANDLE, environment_sampler_ = VK_NULL_HANDLE;

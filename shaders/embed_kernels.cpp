@@ -77,8 +77,11 @@ void writeKernel(std::ostream& out, const std::string& name, const std::vector<u
         if (block.at("set") == 1)
             out << "    {\"" << block.at("name").get<std::string>() << "\", " << block.at("binding") << ", "
                 << (block.value("writeonly", false) ? "false" : "true") << ", " << (block.value("readonly", false) ? "false" : "true")
-                << "},\n";
-    out << "    {\"\", 0, false, false}};\n"; // never empty: C++ has no arrays of length 0
+                << ", false},\n";
+    for (const auto& image : reflection.value("separate_images", nlohmann::json::array()))
+        if (image.at("set") == 1)
+            out << "    {\"" << image.at("name").get<std::string>() << "\", " << image.at("binding") << ", true, false, true},\n";
+    out << "    {\"\", 0, false, false, false}};\n"; // never empty: C++ has no arrays of length 0
 }
 
 void writeEntry(std::ostream& out, const std::string& name, const std::vector<uint32_t>& words, const nlohmann::json& reflection)

@@ -181,7 +181,8 @@ Kernel Device::createKernel(const KernelCode& code, std::span<const uint32_t> co
     std::vector<VkDescriptorSetLayoutBinding> bindings;
     for (const KernelBlock& block : code.blocks)
         bindings.push_back({.binding = block.binding,
-                            .descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
+                            .descriptorType = block.texels ? VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER
+                                                           : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
                             .descriptorCount = 1,
                             .stageFlags = VK_SHADER_STAGE_COMPUTE_BIT});
     const VkDescriptorSetLayoutCreateInfo set_info{
@@ -291,15 +292,17 @@ Buffer Device::buffer(std::string_view name, uint64_t bytes, Placement placement
     return buffer;
 }
 
-VkBufferView Device::texelView(const Buffer& buffer, VkFormat format) const
+Buffer Device::withTexels(Buffer buffer) const
 {
+    check(buffer.size() / kTexelBytes <= limits().maxTexelBufferElements,
+          "buffer '{}' of {} bytes has more than {} texels", buffer.name(), buffer.size(),
+          limits().maxTexelBufferElements);
     const VkBufferViewCreateInfo info{.sType = VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO,
                                       .buffer = buffer.handle(),
-                                      .format = format,
+                                      .format = VK_FORMAT_R32G32B32A32_UINT,
                                       .range = VK_WHOLE_SIZE};
-    VkBufferView view = VK_NULL_HANDLE;
-    vulkanCheck(vkCreateBufferView(device_, &info, nullptr, &view));
-    return view;
+    vulkanCheck(vkCreateBufferView(device_, &info, nullptr, &buffer.texels_));
+    return buffer;
 }
 
 template <typename Record>

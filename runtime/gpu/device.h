@@ -34,6 +34,15 @@ public:
     {
         return buffer(name, (count > 0 ? count : 1) * sizeof(T), Placement::kDevice);
     }
+    /// The same for what some kernel reads as a `usamplerBuffer`: software Vulkan fetches a texel with one wide load,
+    /// where a storage block costs it a bounds-checked load a word. Aborts above limits().maxTexelBufferElements
+    /// texels.
+    template <typename T>
+    Buffer texelArray(std::string_view name, uint64_t count) const
+    {
+        static_assert(sizeof(T) % kTexelBytes == 0);
+        return withTexels(array<T>(name, count));
+    }
     /// Host-visible memory that the GPU writes and the CPU reads.
     Buffer readback(std::string_view name, uint64_t bytes) const { return buffer(name, bytes, Placement::kReadback); }
 
@@ -43,11 +52,15 @@ public:
     {
         return uploadBytes(name, std::as_bytes(data));
     }
+    /// The same with a texel view.
+    template <typename T>
+    Buffer uploadTexels(std::string_view name, std::span<const T> data) const
+    {
+        static_assert(sizeof(T) % kTexelBytes == 0);
+        return withTexels(uploadBytes(name, std::as_bytes(data)));
+    }
     /// An image in shader-read layout; `data` is laid out level by level, layer by layer, tightly packed.
     Image uploadImage(std::string_view name, const ImageShape& shape, std::span<const std::byte> data) const;
-
-    /// A view of a whole buffer for texelFetch; the caller destroys it.
-    VkBufferView texelView(const Buffer& buffer, VkFormat format) const;
 
     /// Copies a buffer's contents to the CPU; waits for the queue.
     template <typename T>
@@ -82,6 +95,7 @@ private:
     void savePipelineCache() const;
     Kernel createKernel(const KernelCode& code, std::span<const uint32_t> constants) const;
     Buffer buffer(std::string_view name, uint64_t bytes, Placement placement) const;
+    Buffer withTexels(Buffer buffer) const;
     Buffer uploadBytes(std::string_view name, std::span<const std::byte> data) const;
     void downloadBytes(const Buffer& source, std::span<std::byte> data) const;
     VkDeviceMemory allocate(const VkMemoryRequirements& needs, Placement placement, bool& host_visible) const;

@@ -7,13 +7,14 @@
 #include <span>
 #include <string_view>
 
-/// One storage block of a kernel (descriptor set 1).
+/// One storage block of a kernel (descriptor set 1), or a `uniform usamplerBuffer`, which is read only.
 struct KernelBlock
 {
-    std::string_view name; // the GLSL block name
+    std::string_view name; // the GLSL block name, or the usamplerBuffer's
     uint32_t binding;
     bool reads;
     bool writes;
+    bool texels; // a usamplerBuffer: its buffer must have a texel view (Device::texelArray)
 };
 
 /// A compiled shader with its reflection, written by the build (shaders/CMakeLists.txt).

@@ -4,6 +4,7 @@ Buffer::~Buffer()
 {
     if (!device_)
         return;
+    vkDestroyBufferView(device_, texels_, nullptr);
     vkDestroyBuffer(device_, buffer_, nullptr);
     vkFreeMemory(device_, memory_, nullptr);
 }
@@ -12,6 +13,7 @@ void Buffer::swap(Buffer& other)
 {
     std::swap(device_, other.device_);
     std::swap(buffer_, other.buffer_);
+    std::swap(texels_, other.texels_);
     std::swap(memory_, other.memory_);
     std::swap(size_, other.size_);
     std::swap(mapped_, other.mapped_);

@@ -7,6 +7,8 @@
 #include <string>
 #include <utility>
 
+constexpr uint64_t kTexelBytes = 16; // of a texel view: four 32-bit words, RGBA32UI
+
 /// Device-local memory owned by this object. Its owner keeps it alive until the GPU is done with it.
 class Buffer
 {
@@ -18,6 +20,8 @@ public:
 
     uint64_t size() const { return size_; } // bytes
     VkBuffer handle() const { return buffer_; }
+    /// The whole buffer for texelFetch, kTexelBytes a texel; null where it was not made for that.
+    const VkBufferView& texels() const { return texels_; }
     const std::string& name() const { return name_; }
     /// The buffer's bytes where the CPU can reach them (host-visible memory), else empty.
     std::span<std::byte> mapped() const { return mapped_; }
@@ -28,6 +32,7 @@ private:
     void swap(Buffer& other);
     VkDevice device_ = VK_NULL_HANDLE;
     VkBuffer buffer_ = VK_NULL_HANDLE;
+    VkBufferView texels_ = VK_NULL_HANDLE;
     VkDeviceMemory memory_ = VK_NULL_HANDLE;
     uint64_t size_ = 0;
     std::span<std::byte> mapped_;

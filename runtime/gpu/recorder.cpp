@@ -131,12 +131,17 @@ void Recorder::prepare(const Kernel& kernel, const void* params, size_t param_by
         check(std::ranges::count(bindings, binding.block, &Binding::block) == 1, "{}: block '{}' is given twice; its blocks are{}",
               code.name, binding.block, list());
         hazard |= conflicts(binding.buffer, block->writes);
+        check(!block->texels || binding.buffer.texels(),
+              "{}: '{}' is read as texels, but buffer '{}' has no texel view", code.name, binding.block,
+              binding.buffer.name());
         infos[count] = {.buffer = binding.buffer.handle(), .offset = 0, .range = VK_WHOLE_SIZE};
         writes[count] = {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
                          .dstBinding = block->binding,
                          .descriptorCount = 1,
-                         .descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
-                         .pBufferInfo = &infos[count]};
+                         .descriptorType = block->texels ? VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER
+                                                         : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
+                         .pBufferInfo = &infos[count],
+                         .pTexelBufferView = &binding.buffer.texels()};
         ++count;
     }
     if (hazard)

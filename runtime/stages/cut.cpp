@@ -15,8 +15,9 @@ CutStage::CutStage(const Device& device, const SceneGpu& scene, uint32_t max_pho
       members_(device.array<uint32_t>("cut.members", 2 * uint64_t(max_photons))),
       finals_(device.array<gpu::CutNode>("cut.finals", 2 * uint64_t(max_photons))), size_(device.array<gpu::QueueSize>("cut.size", 1)),
       ids_(device.array<uint32_t>("cut.ids", max_photons)), spheres_(device.array<gpu::vec4>("cut.spheres", max_photons)),
-      nodes_(device.array<gpu::CutNode>("cut.nodes", max_photons)),
-      probes_(device, "cut.probes", gpu::kCutProbeCapacity), hits_(device.array<gpu::Hit>("cut.hits", gpu::kCutProbeCapacity))
+      nodes_(device.texelArray<gpu::CutNode>("cut.nodes", max_photons)),
+      probes_(device, "cut.probes", gpu::kCutProbeCapacity),
+      hits_(device.texelArray<gpu::Hit>("cut.hits", gpu::kCutProbeCapacity))
 {
 }
 

@@ -7,7 +7,7 @@ DirectStage::DirectStage(const Device& device, const SceneGpu& scene, uint32_t m
       shadow_size_(device.array<gpu::QueueSize>("direct.shadow_size", 1)),
       shadow_rays_(device.array<gpu::ShadowRay>("direct.shadow_rays", max_pixels)),
       emitter_rays_(device.array<gpu::EmitterRay>("direct.emitter_rays", max_pixels)),
-      hits_(device.array<gpu::Hit>("direct.hits", max_pixels)),
+      hits_(device.texelArray<gpu::Hit>("direct.hits", max_pixels)),
       has_area_lights_(scene.hasAreaLights())
 {
 }

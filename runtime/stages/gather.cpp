@@ -5,7 +5,7 @@ GatherStage::GatherStage(const Device& device, const SceneGpu& scene, uint32_t m
       link_(device.kernel("gather/link", scene.constants())), link_knn_(device.kernel("gather/link_knn", scene.constants())),
       sum_(device.kernel("gather/sum")), queue_(device, "gather.queue", max_samples * max_rays_per_sample),
       next_queue_(device, "gather.next_queue", max_samples * max_rays_per_sample),
-      hits_(device.array<gpu::Hit>("gather.hits", uint64_t(max_samples) * max_rays_per_sample)),
+      hits_(device.texelArray<gpu::Hit>("gather.hits", uint64_t(max_samples) * max_rays_per_sample)),
       states_(device.array<gpu::GatherState>("gather.states", uint64_t(max_samples) * max_rays_per_sample)),
       gathered_(device.array<gpu::Gathered>("gather.gathered", uint64_t(max_samples) * max_rays_per_sample))
 {

@@ -3,7 +3,7 @@
 GlossyStage::GlossyStage(const Device& device, const SceneGpu& scene, uint32_t max_pixels)
     : generate_(device.kernel("glossy/generate", scene.constants())), link_(device.kernel("glossy/link", scene.constants())),
       queue_(device, "glossy.queue", max_pixels), next_queue_(device, "glossy.next_queue", max_pixels),
-      hits_(device.array<gpu::Hit>("glossy.hits", max_pixels)), states_(device.array<gpu::GatherState>("glossy.states", max_pixels))
+      hits_(device.texelArray<gpu::Hit>("glossy.hits", max_pixels)), states_(device.array<gpu::GatherState>("glossy.states", max_pixels))
 {
 }
 

@@ -1,8 +1,15 @@
 #include "runtime/stages/interpolate.h"
 
-InterpolateStage::InterpolateStage(const Device& device, const SceneGpu& scene, uint32_t max_samples)
-    : reorder_(device.kernel("interpolate/reorder")), apply_(device.kernel("interpolate/apply", scene.constants())),
-      tree_(device, "interpolate.tree", max_samples), sorted_(device.array<gpu::Sample>("interpolate.sorted", max_samples)),
+namespace
+{
+// Neighbouring pixels a thread. Software Vulkan pays for every load, and shares them; a GPU has threads to spare.
+constexpr uint32_t kCpuRun = 4;
+} // namespace
+
+InterpolateStage::InterpolateStage(const Device& device, uint32_t max_samples)
+    : reorder_(device.kernel("interpolate/reorder")), run_(device.isCpu() ? kCpuRun : 1),
+      apply_(device.kernel("interpolate/apply", std::span(&run_, 1))),
+      tree_(device, "interpolate.tree", max_samples), sorted_(device.texelArray<gpu::SampleTexels>("interpolate.sorted", max_samples)),
       statistics_(device.array<gpu::InterpolateStatistics>("interpolate.statistics", 1))
 {
 }
@@ -14,7 +21,7 @@ void InterpolateStage::record(Recorder& rec, const SamplesStage::Output& samples
                     {{"Size", samples.size}, {"Order", tree_.order()}, {"Samples", samples.samples}, {"Sorted", sorted_}});
     rec.clear(statistics_);
     const gpu::InterpolateParams params{.point_count = in.point_count, .alpha = in.alpha, .radius = in.radius, .white = in.white};
-    rec.run(apply_, in.point_count, params,
-            {{"Size", samples.size}, {"TreeNodes", tree_.nodes()}, {"Samples", sorted_}, {"Points", in.points}, {"Radiance", in.radiance},
+    rec.run(apply_, (in.point_count + run_ - 1) / run_, params,
+            {{"Size", samples.size}, {"TreeNodes", tree_.nodes()}, {"Samples", sorted_}, {"DiffusePoints", in.diffuse_points}, {"Radiance", in.radiance},
              {"Statistics", statistics_}});
 }

@@ -6,12 +6,12 @@
 class InterpolateStage
 {
 public:
-    InterpolateStage(const Device& device, const SceneGpu& scene, uint32_t max_samples);
+    InterpolateStage(const Device& device, uint32_t max_samples);
 
     struct Input
     {
-        const Buffer& points;   // gpu::ShadingPoint[point_count]
-        const Buffer& radiance; // vec3[point_count], grows by the indirect diffuse light
+        const Buffer& diffuse_points; // gpu::DiffusePoint[point_count]
+        const Buffer& radiance;       // vec3[point_count], grows by the indirect diffuse light
         uint32_t point_count;
         float alpha;  // of Eq. 2, per metre, where no sample is accepted
         float radius; // metres: how far a sample may be there
@@ -22,7 +22,9 @@ public:
     const Buffer& statistics() const { return statistics_; } // gpu::InterpolateStatistics of the last frame
 
 private:
-    Kernel reorder_, apply_;
+    Kernel reorder_;
+    uint32_t run_; // pixels a thread
+    Kernel apply_;
     Tree tree_;
     Buffer sorted_, statistics_;
 };

@@ -7,7 +7,7 @@ PhotonTreeStage::PhotonTreeStage(const Device& device, std::string_view name, ui
       size_(device.array<gpu::QueueSize>(fmt::format("{}.size", name), 1)),
       slots_(device.array<uint32_t>(fmt::format("{}.slots", name), max_slots)),
       spheres_(device.array<gpu::vec4>(fmt::format("{}.spheres", name), max_slots)),
-      sorted_(device.array<gpu::Photon>(fmt::format("{}.sorted", name), max_slots))
+      sorted_(device.texelArray<gpu::Photon>(fmt::format("{}.sorted", name), max_slots))
 {
 }
 

@@ -1,12 +1,14 @@
 #include "runtime/stages/primary.h"
 
 PrimaryStage::PrimaryStage(const Device& device, const SceneGpu& scene, uint32_t max_pixels)
-    : generate_(device.kernel("primary/generate")),
+    : has_specular_(scene.hasFeature(gpu::kFeatureSpecular)),
+      generate_(device.kernel("primary/generate")),
       chain_(device.kernel("primary/chain", scene.constants())),
       queue_(device, "primary.queue", max_pixels),
       next_queue_(device, "primary.next_queue", max_pixels),
-      hits_(device.array<gpu::Hit>("primary.hits", max_pixels)),
+      hits_(device.texelArray<gpu::Hit>("primary.hits", max_pixels)),
       points_(device.array<gpu::ShadingPoint>("primary.points", max_pixels)),
+      diffuse_points_(device.texelArray<gpu::DiffusePoint>("primary.diffuse_points", max_pixels)),
       radiance_(device.array<gpu::vec3>("primary.radiance", max_pixels))
 {
 }
@@ -20,10 +22,11 @@ PrimaryStage::Output PrimaryStage::record(Recorder& rec, const RayStage& rays, c
 
     const RayQueue* queue = &queue_;
     const RayQueue* next = &next_queue_;
-    for (uint32_t depth = 0; depth <= in.specular_depth; ++depth)
+    const uint32_t depth_limit = has_specular_ ? in.specular_depth : 0;
+    for (uint32_t depth = 0; depth <= depth_limit; ++depth)
     {
         const gpu::ChainParams params{.depth = depth,
-                                      .depth_limit = in.specular_depth,
+                                      .depth_limit = depth_limit,
                                       .pixel_count = pixel_count,
                                       .first_sample = in.camera.first_sample,
                                       .seed = in.camera.seed};
@@ -31,9 +34,9 @@ PrimaryStage::Output PrimaryStage::record(Recorder& rec, const RayStage& rays, c
         rays.reset(rec, next->size);
         rec.runIndirect(chain_, queue->size, 0, params,
                         {{"Queue", queue->size}, {"Rays", queue->rays}, {"Hits", hits_}, {"Points", points_}, {"Radiance", radiance_},
-                         {"NextQueue", next->size}, {"NextRays", next->rays}});
+                         {"NextQueue", next->size}, {"NextRays", next->rays}, {"DiffusePoints", diffuse_points_}});
         rays.close(rec, next->size);
         std::swap(queue, next);
     }
-    return {.points = points_, .radiance = radiance_};
+    return {.points = points_, .diffuse_points = diffuse_points_, .radiance = radiance_};
 }

@@ -16,12 +16,14 @@ public:
     struct Output
     {
         const Buffer& points;   // gpu::ShadingPoint[width * height]
+        const Buffer& diffuse_points; // gpu::DiffusePoint[width * height], with a texel view
         const Buffer& radiance; // vec3[width * height]: what the chains themselves found: emitters, sky
     };
     Output record(Recorder& rec, const RayStage& rays, const Input& in) const;
 
 private:
+    bool has_specular_;
     Kernel generate_, chain_;
     RayQueue queue_, next_queue_;
-    Buffer hits_, points_, radiance_;
+    Buffer hits_, points_, diffuse_points_, radiance_;
 };

@@ -4,7 +4,7 @@
 
 RayQueue::RayQueue(const Device& device, std::string_view name, uint32_t capacity)
     : size(device.array<gpu::QueueSize>(fmt::format("{}.size", name), 1)),
-      rays(device.array<gpu::Ray>(fmt::format("{}.rays", name), capacity))
+      rays(device.texelArray<gpu::Ray>(fmt::format("{}.rays", name), capacity))
 {
 }
 

@@ -27,19 +27,29 @@ uint32_t levelsFor(uint32_t width, uint32_t height, uint32_t stride)
     const uint32_t longest = (std::max(width, height) + stride - 1) / stride;
     return std::max(1u, uint32_t(std::bit_width(longest - 1)));
 }
+
+/// Points in Z-order up to the last one within the picture: of a wide picture's square that is less than half.
+uint32_t pointCount(uint32_t width, uint32_t height, uint32_t stride)
+{
+    const uint32_t x = (width - 1) / stride, y = (height - 1) / stride;
+    uint32_t last = 0;
+    for (uint32_t bit = 0; bit < 16; ++bit)
+        last |= (x >> bit & 1) << (2 * bit) | (y >> bit & 1) << (2 * bit + 1);
+    return last + 1;
+}
 } // namespace
 
 SamplesStage::SamplesStage(const Device& device, const SceneGpu& scene, uint32_t width, uint32_t height, uint32_t max_samples)
     : width_(width), height_(height), diagonal_(diagonalOf(scene.info())), stride_(strideFor(width * height, max_samples)), levels_(levelsFor(width, height, stride_)),
-      point_count_(1u << (2 * levels_)), points_kernel_(device.kernel("samples/points", scene.constants())),
+      grid_count_(1u << (2 * levels_)), point_count_(pointCount(width, height, stride_)), points_kernel_(device.kernel("samples/points")),
       mean_(device.kernel("samples/mean")), variation_(device.kernel("samples/variation")), budget_(device.kernel("samples/budget")),
       seed_(device.kernel("samples/seed")), assign_(device.kernel("samples/assign")), update_(device.kernel("samples/update")),
       snap_(device.kernel("samples/snap")), occupied_kernel_(device.kernel("samples/occupied")), place_(device.kernel("samples/place")),
       seed_compaction_(device, "samples.seed_compaction", point_count_), sample_compaction_(device, "samples.compaction", max_samples),
       tree_(device, "samples.tree", max_samples), point_size_(device.array<gpu::QueueSize>("samples.point_size", 1)),
       points_(device.array<gpu::SamplePoint>("samples.points", point_count_)),
-      quad_nodes_(device.array<gpu::QuadNode>("samples.quad_nodes", point_count_ / 3 + 1)),
-      budgets_(device.array<uint32_t>("samples.budgets", point_count_ / 3 + 1)),
+      quad_nodes_(device.array<gpu::QuadNode>("samples.quad_nodes", grid_count_ / 3 + 1)),
+      budgets_(device.array<uint32_t>("samples.budgets", grid_count_ / 3 + 1)),
       seed_flags_(device.array<uint32_t>("samples.seed_flags", point_count_)), seeds_(device.array<uint32_t>("samples.seeds", point_count_)),
       cluster_size_(device.array<gpu::QueueSize>("samples.cluster_size", 1)),
       clusters_(device.array<gpu::Cluster>("samples.clusters", max_samples)),
@@ -62,8 +72,8 @@ void SamplesStage::assign(Recorder& rec, const gpu::ClusterParams& params) const
 SamplesStage::Output SamplesStage::record(Recorder& rec, const RayStage& rays, const Input& in) const
 {
     rec.run(points_kernel_, point_count_,
-            gpu::PointParams{.width = width_, .height = height_, .stride = stride_, .levels = levels_, .seed = in.seed},
-            {{"ShadingPoints", in.shading_points}, {"Points", points_}});
+            gpu::PointParams{.width = width_, .height = height_, .stride = stride_, .seed = in.seed},
+            {{"DiffusePoints", in.diffuse_points}, {"Points", points_}});
 
     // Fixed point that cannot overflow in any sum that is read, those of the root's children and below.
     const float largest_eps = 2 + in.alpha * diagonal_;
@@ -72,7 +82,7 @@ SamplesStage::Output SamplesStage::record(Recorder& rec, const RayStage& rays, c
                             .budget = in.budget,
                             .seed = in.seed,
                             .alpha = in.alpha,
-                            .variation_scale = 4294967040.0f / (largest_eps * float(point_count_ / 4)),
+                            .variation_scale = 4294967040.0f / (largest_eps * float(grid_count_ / 4)),
                             .uniform_ = in.mode == SamplesMode::kUniform};
     const auto levelThreads = [&](uint32_t level) { return 1u << (2 * (levels_ - level)); };
     for (seeding.level = 1; seeding.level <= levels_; ++seeding.level)
@@ -89,7 +99,7 @@ SamplesStage::Output SamplesStage::record(Recorder& rec, const RayStage& rays, c
                      {"Spheres", cluster_spheres_}, {"Sums", sums_}});
 
     const gpu::ClusterParams clustering{
-        .point_count = point_count_, .alpha = in.alpha, .fixed_scale = 4294967040.0f / float(point_count_), .reach = in.reach};
+        .point_count = point_count_, .alpha = in.alpha, .fixed_scale = 4294967040.0f / float(grid_count_), .reach = in.reach};
     for (uint32_t i = 0; in.mode == SamplesMode::kKmeans && i < in.iterations; ++i)
     {
         assign(rec, clustering);

@@ -18,7 +18,7 @@ public:
 
     struct Input
     {
-        const Buffer& shading_points; // gpu::ShadingPoint[width * height]
+        const Buffer& diffuse_points; // gpu::DiffusePoint[width * height]
         SamplesMode mode;
         uint32_t budget;     // samples, <= max_samples
         uint32_t iterations; // of k-means
@@ -41,7 +41,7 @@ public:
         uint32_t stride; // pixels between neighbouring points, each way
         uint32_t levels; // points are level 0
         const Buffer& budgets; // uint[], by node as samples/quadtree.glsl orders them: samples that it was to get
-        const Buffer& owners;  // uvec2[4^levels], by point in Z-order: its cluster or kNone, bits of its eps
+        const Buffer& owners;  // uvec2[], by point in Z-order: its cluster or kNone, bits of its eps
     };
     Quadtree quadtree() const { return {.stride = stride_, .levels = levels_, .budgets = budgets_, .owners = owners_}; }
 
@@ -59,7 +59,8 @@ private:
 
     uint32_t width_, height_;
     float diagonal_; // of the scene, metres
-    uint32_t stride_, levels_, point_count_;
+    uint32_t stride_, levels_;
+    uint32_t grid_count_, point_count_; // points of the quadtree's square; the first of them that hold all of the picture
     Kernel points_kernel_, mean_, variation_, budget_, seed_, assign_, update_, snap_, occupied_kernel_, place_;
     Compaction seed_compaction_, sample_compaction_;
     Tree tree_;

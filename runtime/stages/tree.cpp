@@ -9,7 +9,7 @@ Tree::Tree(const Device& device, std::string_view name, uint32_t max_count)
     : keys_kernel_(device.kernel("tree/keys")), hierarchy_(device.kernel("tree/hierarchy")), bounds_(device.kernel("tree/bounds", climbConstants(device))),
       sort_(device, fmt::format("{}.sort", name), max_count), keys_(device.array<uint32_t>(fmt::format("{}.keys", name), max_count)),
       order_(device.array<uint32_t>(fmt::format("{}.order", name), max_count)),
-      nodes_(device.array<gpu::TreeNode>(fmt::format("{}.nodes", name), max_count)),
+      nodes_(device.texelArray<gpu::TreeNode>(fmt::format("{}.nodes", name), max_count)),
       leaf_parents_(device.array<uint32_t>(fmt::format("{}.leaf_parents", name), max_count)),
       node_parents_(device.array<uint32_t>(fmt::format("{}.node_parents", name), max_count)),
       arrivals_(device.array<uint32_t>(fmt::format("{}.arrivals", name), max_count))

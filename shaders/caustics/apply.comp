@@ -10,8 +10,8 @@ layout(local_size_x = kRaysGroupSize) in;
 layout(push_constant, scalar) uniform Params { CausticsParams params; };
 
 layout(set = 1, binding = 0, scalar) readonly buffer Size { QueueSize size; };
-layout(set = 1, binding = 1, scalar) readonly buffer TreeNodes { TreeNode tree_nodes[]; };
-layout(set = 1, binding = 2, scalar) readonly buffer Photons { Photon photons[]; };
+layout(set = 1, binding = 1) uniform usamplerBuffer TreeNodes;
+layout(set = 1, binding = 2) uniform usamplerBuffer Photons;
 layout(set = 1, binding = 3, scalar) readonly buffer Points { ShadingPoint points[]; };
 layout(set = 1, binding = 4, scalar) buffer Radiance { vec3 radiance[]; };
 #include "shaders/lib/density.glsl"

@@ -12,8 +12,8 @@ layout(local_size_x = kCutGroupSize) in;
 layout(push_constant, scalar) uniform Params { CutParams params; };
 
 layout(set = 1, binding = 0, scalar) readonly buffer Size { QueueSize size; };
-layout(set = 1, binding = 1, scalar) readonly buffer TreeNodes { TreeNode tree_nodes[]; };
-layout(set = 1, binding = 2, scalar) readonly buffer Photons { Photon photons[]; };
+layout(set = 1, binding = 1) uniform usamplerBuffer TreeNodes;
+layout(set = 1, binding = 2) uniform usamplerBuffer Photons;
 layout(set = 1, binding = 3, scalar) readonly buffer LeafParents { uint leaf_parents[]; };
 layout(set = 1, binding = 4, scalar) readonly buffer NodeParents { uint node_parents[]; };
 layout(set = 1, binding = 5, scalar) readonly buffer Sums { PhotonSums sums[]; };
@@ -34,7 +34,7 @@ bool isDivided(uint child) { return (child & kTreeLeafBit) == 0u && divided[chil
 
 bool shouldDivide(uint node)
 {
-    uint left = tree_nodes[node].left, right = tree_nodes[node].right;
+    uint left = loadTreeNode(node).left, right = loadTreeNode(node).right;
     if (isDivided(left) || isDivided(right))
         return true;
     PhotonNode n = photonNode(node);

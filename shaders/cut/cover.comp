@@ -11,9 +11,11 @@ layout(local_size_x = kCutGroupSize) in;
 layout(push_constant, scalar) uniform Params { ProbeParams params; };
 
 layout(set = 1, binding = 0, scalar) readonly buffer Size { QueueSize size; };
-layout(set = 1, binding = 1, scalar) readonly buffer Rays { Ray rays[]; };
-layout(set = 1, binding = 2, scalar) readonly buffer Hits { Hit hits[]; };
+layout(set = 1, binding = 1) uniform usamplerBuffer Rays;
+layout(set = 1, binding = 2) uniform usamplerBuffer Hits;
 layout(set = 1, binding = 3, scalar) buffer Nodes { CutNode nodes[]; };
+#include "shaders/lib/hit.glsl"
+#include "shaders/lib/ray.glsl"
 
 /// The node's weight where a ray came down, times the area that it stands for, against what a plane would have there.
 float covered(CutNode node, vec3 normal, Ray ray, Hit hit)
@@ -38,7 +40,7 @@ void main()
     vec3 normal = unpackNormal(node.normal);
     float sum = 0.0;
     for (uint k = i * ray_count; k < (i + 1u) * ray_count; ++k)
-        sum += covered(node, normal, rays[k], hits[k]);
+        sum += covered(node, normal, loadRay(k), loadHit(k));
     // (n + 1) / (sum + 1): of n independent rays its mean is 1 / the part that is there, not more.
     nodes[i].irradiance *= min(float(ray_count + 1u) / (sum + 1.0), kMostUncovered);
 }

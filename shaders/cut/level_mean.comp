@@ -9,8 +9,8 @@
 layout(local_size_x = kPartialGroupSize) in;
 
 layout(set = 1, binding = 0, scalar) readonly buffer Size { QueueSize size; };
-layout(set = 1, binding = 1, scalar) readonly buffer TreeNodes { TreeNode tree_nodes[]; };
-layout(set = 1, binding = 2, scalar) readonly buffer Photons { Photon photons[]; };
+layout(set = 1, binding = 1) uniform usamplerBuffer TreeNodes;
+layout(set = 1, binding = 2) uniform usamplerBuffer Photons;
 layout(set = 1, binding = 3, scalar) readonly buffer NodeParents { uint node_parents[]; };
 layout(set = 1, binding = 4, scalar) readonly buffer Sums { PhotonSums sums[]; };
 layout(set = 1, binding = 5, scalar) writeonly buffer Partials { PartialMean partials[]; };
@@ -26,9 +26,9 @@ void main()
     uint count = 0u;
     for (uint id = gl_GlobalInvocationID.x; id + 1u < size.count; id += kPartialMeans * kPartialGroupSize)
     {
-        if (tree_nodes[id].count > level_count)
+        if (loadTreeNode(id).count > level_count)
             continue;
-        if (id != 0u && tree_nodes[node_parents[id] & ~kTreeLeafBit].count <= level_count)
+        if (id != 0u && loadTreeNode(node_parents[id] & ~kTreeLeafBit).count <= level_count)
             continue;
         sum += photonNode(id).irradiance;
         ++count;

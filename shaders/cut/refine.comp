@@ -13,8 +13,8 @@ layout(local_size_x = kCutGroupSize) in;
 layout(push_constant, scalar) uniform Params { CutParams params; };
 
 layout(set = 1, binding = 0, scalar) readonly buffer Size { QueueSize size; };
-layout(set = 1, binding = 1, scalar) readonly buffer TreeNodes { TreeNode tree_nodes[]; };
-layout(set = 1, binding = 2, scalar) readonly buffer Photons { Photon photons[]; };
+layout(set = 1, binding = 1) uniform usamplerBuffer TreeNodes;
+layout(set = 1, binding = 2) uniform usamplerBuffer Photons;
 layout(set = 1, binding = 3, scalar) readonly buffer Sums { PhotonSums sums[]; };
 layout(set = 1, binding = 4, scalar) readonly buffer WorkSize { QueueSize work_size; };
 layout(set = 1, binding = 5, scalar) readonly buffer Work { uint work[]; };
@@ -28,8 +28,8 @@ layout(set = 1, binding = 9, scalar) writeonly buffer Finals { CutNode finals[];
 void divide(uint id)
 {
     uint slot = atomicAdd(next_size.count, 2u);
-    next[slot] = childId(tree_nodes[id].left);
-    next[slot + 1u] = childId(tree_nodes[id].right);
+    next[slot] = childId(loadTreeNode(id).left);
+    next[slot + 1u] = childId(loadTreeNode(id).right);
 }
 
 void main()

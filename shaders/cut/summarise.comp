@@ -10,8 +10,8 @@
 layout(local_size_x = kCutGroupSize) in;
 
 layout(set = 1, binding = 0, scalar) readonly buffer Size { QueueSize size; };
-layout(set = 1, binding = 1, scalar) readonly buffer TreeNodes { TreeNode tree_nodes[]; };
-layout(set = 1, binding = 2, scalar) readonly buffer Photons { Photon photons[]; };
+layout(set = 1, binding = 1) uniform usamplerBuffer TreeNodes;
+layout(set = 1, binding = 2) uniform usamplerBuffer Photons;
 layout(set = 1, binding = 3, scalar) readonly buffer LeafParents { uint leaf_parents[]; };
 layout(set = 1, binding = 4, scalar) readonly buffer NodeParents { uint node_parents[]; };
 layout(set = 1, binding = 5, scalar) coherent buffer Sums { PhotonSums sums[]; };
@@ -32,7 +32,7 @@ void main()
         if (atomicAdd(arrivals[node], 1u) == 0u)
             return;
         fence();
-        uint sibling = (link & kTreeLeafBit) != 0u ? tree_nodes[node].left : tree_nodes[node].right;
+        uint sibling = (link & kTreeLeafBit) != 0u ? loadTreeNode(node).left : loadTreeNode(node).right;
         uint index = sibling & ~kTreeLeafBit;
         PhotonSums other;
         if ((sibling & kTreeLeafBit) != 0u)

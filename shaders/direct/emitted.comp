@@ -13,10 +13,12 @@ layout(local_size_x = kRaysGroupSize) in;
 layout(push_constant, scalar) uniform Params { RaysParams params; };
 
 layout(set = 1, binding = 0, scalar) readonly buffer EmitterQueue { QueueSize emitter_queue; };
-layout(set = 1, binding = 1, scalar) readonly buffer Rays { Ray rays[]; };
-layout(set = 1, binding = 2, scalar) readonly buffer Hits { Hit hits[]; };
+layout(set = 1, binding = 1) uniform usamplerBuffer Rays;
+layout(set = 1, binding = 2) uniform usamplerBuffer Hits;
 layout(set = 1, binding = 3, scalar) readonly buffer EmitterRays { EmitterRay emitter_rays[]; };
 layout(set = 1, binding = 4, scalar) buffer Radiance { vec3 radiance[]; };
+#include "shaders/lib/hit.glsl"
+#include "shaders/lib/ray.glsl"
 
 /// What the ray meets there, weighted against the shadow rays that could have found it too.
 vec3 emittedLight(Hit hit, vec3 direction, float pdf)
@@ -41,8 +43,8 @@ void main()
     uint i = gl_GlobalInvocationID.x;
     if (i >= emitter_queue.count)
         return;
-    Ray ray = rays[i];
-    Hit hit = hits[i];
+    Ray ray = loadRay(i);
+    Hit hit = loadHit(i);
     vec3 through = vec3(1.0);
     vec3 light = emittedLight(hit, ray.direction, emitter_rays[i].pdf);
     for (uint layer = 1u; kSceneHasThin && hit.slot != kNone && layer <= kMaxLayers; ++layer)

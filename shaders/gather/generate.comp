@@ -24,7 +24,7 @@ void main()
     if (i >= count)
         return;
     uint sample_ = i / params.ray_count;
-    Sampler sampler_ = Sampler(hash(params.seed, sample_), i % params.ray_count, 0u);
+    Sampler sampler_ = Sampler(hash(params.seed, sample_), i - sample_ * params.ray_count, 0u);
     vec2 u = nextPair(sampler_);
     vec3 normal = unpackNormal(samples[sample_].normal);
     float r = sqrt(u.x), phi = 2.0 * kPi * u.y;

@@ -9,15 +9,17 @@ layout(local_size_x = kRaysGroupSize) in;
 layout(push_constant, scalar) uniform Params { GlossyParams params; };
 
 layout(set = 1, binding = 0, scalar) readonly buffer Queue { QueueSize queue; };
-layout(set = 1, binding = 1, scalar) readonly buffer Rays { Ray rays[]; };
-layout(set = 1, binding = 2, scalar) readonly buffer Hits { Hit hits[]; };
+layout(set = 1, binding = 1) uniform usamplerBuffer Rays;
+layout(set = 1, binding = 2) uniform usamplerBuffer Hits;
 layout(set = 1, binding = 3, scalar) buffer States { GatherState states[]; };
 layout(set = 1, binding = 4, scalar) buffer NextQueue { QueueSize next_queue; };
 layout(set = 1, binding = 5, scalar) writeonly buffer NextRays { Ray next_rays[]; };
 layout(set = 1, binding = 6, scalar) buffer Radiance { vec3 radiance[]; };
 layout(set = 1, binding = 7, scalar) readonly buffer CutSize { QueueSize cut_size; };
-layout(set = 1, binding = 8, scalar) readonly buffer TreeNodes { TreeNode tree_nodes[]; };
-layout(set = 1, binding = 9, scalar) readonly buffer CutNodes { CutNode cut_nodes[]; };
+layout(set = 1, binding = 8) uniform usamplerBuffer TreeNodes;
+layout(set = 1, binding = 9) uniform usamplerBuffer CutNodes;
+#include "shaders/lib/hit.glsl"
+#include "shaders/lib/ray.glsl"
 #include "shaders/lib/cut.glsl"
 
 vec3 irradianceAt(vec3 x, vec3 n)
@@ -31,8 +33,8 @@ void main()
     uint i = gl_GlobalInvocationID.x;
     if (i >= queue.count)
         return;
-    Ray ray = rays[i];
-    Hit hit = hits[i];
+    Ray ray = loadRay(i);
+    Hit hit = loadHit(i);
     GatherState state = states[ray.path];
     Sampler sampler_ = Sampler(hash(params.seed, ray.path), params.first_sample, params.depth);
     Link link = followLink(ray, hit, state, sampler_, true);

@@ -8,16 +8,22 @@
 layout(local_size_x = kGuideGroupSize) in;
 
 layout(set = 1, binding = 0, scalar) readonly buffer Queue { QueueSize queue; };
-layout(set = 1, binding = 1, scalar) readonly buffer Rays { Ray rays[]; };
-layout(set = 1, binding = 2, scalar) readonly buffer Hits { Hit hits[]; };
+layout(set = 1, binding = 1) uniform usamplerBuffer Rays;
+layout(set = 1, binding = 2) uniform usamplerBuffer Hits;
 layout(set = 1, binding = 3, scalar) buffer Wanted { uint wanted[]; }; // by voxel, 0 before
+#include "shaders/lib/hit.glsl"
+#include "shaders/lib/ray.glsl"
 
 void main()
 {
     uint i = gl_GlobalInvocationID.x * kGuideMarkStride;
-    if (i >= queue.count || hits[i].slot == kNone)
+    if (i >= queue.count)
         return;
-    uint voxel = voxelAt(rays[i].origin + hits[i].t * rays[i].direction);
+    Ray ray = loadRay(i);
+    Hit hit = loadHit(i);
+    if (hit.slot == kNone)
+        return;
+    uint voxel = voxelAt(ray.origin + hit.t * ray.direction);
     if (wanted[voxel] == 0u)
         atomicOr(wanted[voxel], 1u);
 }

@@ -1,94 +1,134 @@
 #version 460
+#extension GL_EXT_control_flow_attributes : require
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "shaders/interpolate/interpolate.h"
-#include "shaders/lib/bsdf.glsl"
+#include "shaders/lib/math.glsl"
 #include "shaders/lib/variation.glsl"
 
-// Indirect diffuse light of every pixel from the samples whose support holds its shading point. One thread per pixel.
+// Indirect diffuse light of every pixel from the samples whose support holds its shading point. One thread per run of
+// kRun neighbouring pixels: they share one search, which finds what any of them needs, and what it loads.
+
+layout(constant_id = 0) const uint kRun = 1u;
 
 layout(local_size_x = kRaysGroupSize) in;
 layout(push_constant, scalar) uniform Params { InterpolateParams params; };
 
 layout(set = 1, binding = 0, scalar) readonly buffer Size { QueueSize size; };
-layout(set = 1, binding = 1, scalar) readonly buffer TreeNodes { TreeNode tree_nodes[]; };
-layout(set = 1, binding = 2, scalar) readonly buffer Samples { Sample samples[]; };
-layout(set = 1, binding = 3, scalar) readonly buffer Points { ShadingPoint points[]; };
+layout(set = 1, binding = 1) uniform usamplerBuffer TreeNodes;
+layout(set = 1, binding = 2) uniform usamplerBuffer Samples;
+layout(set = 1, binding = 3) uniform usamplerBuffer DiffusePoints;
 layout(set = 1, binding = 4, scalar) buffer Radiance { vec3 radiance[]; };
 layout(set = 1, binding = 5, scalar) buffer Statistics { InterpolateStatistics statistics; };
+#include "shaders/lib/diffuse_point.glsl"
 #include "shaders/lib/tree.glsl"
 
 const float kLargestWeight = 100.0;
 
+SampleTexels loadSample(uint index)
+{
+    int row = int(3u * index);
+    vec4 a = uintBitsToFloat(texelFetch(Samples, row)), b = uintBitsToFloat(texelFetch(Samples, row + 1));
+    vec4 c = uintBitsToFloat(texelFetch(Samples, row + 2));
+    return SampleTexels(a.xyz, a.w, b.xyz, b.w, c.xyz, c.w);
+}
+
 /// A sample's weight (Ward et al. 1988), taken smoothly to zero at the rim of its support so that no edge shows where one
 /// sample's reach ends; 0 where it is on another surface or in front of x.
-float sampleWeight(Sample s, vec3 x, vec3 n)
+float sampleWeight(SampleTexels s, vec3 x, vec3 n)
 {
     vec3 d = x - s.position;
     float distance2 = dot(d, d);
-    vec3 normal = unpackNormal(s.normal);
-    if (distance2 >= square(s.support) || dot(n, normal) <= 0.01 || dot(d, n + normal) < -0.01 * s.harmonic)
+    if (distance2 >= s.support2 || dot(n, s.normal) <= 0.01 || dot(d, n + s.normal) < -0.01 * s.harmonic)
         return 0.0;
-    float rim = square(max(0.0, 1.0 - surfaceDistance2(d, normal) / square(s.support)));
-    return rim * min(kLargestWeight, 1.0 / max(sqrt(distance2) / s.harmonic + normalVariation(n, normal), 1e-6));
+    float rim = square(max(0.0, 1.0 - surfaceDistance2(d, s.normal) / s.support2));
+    return rim * min(kLargestWeight, 1.0 / max(sqrt(distance2) * s.inverse_harmonic + normalVariation(n, s.normal), 1e-6));
 }
 
-/// Irradiance of the sample of least variation.
-vec3 nearestIrradiance(vec3 x, vec3 n)
+// The pixels of a run. Loops over them are unrolled: arrays that stay in registers.
+vec3 x[kRun], n[kRun], reflectance[kRun];
+vec4 sum[kRun]; // of weighted irradiance and of weights
+
+/// Loads the run that starts at `pixel`; between low and high lies what of it is diffuse. @return whether anything is
+bool loadRun(uint pixel, out vec3 low, out vec3 high)
 {
-    uint nearest = kNone;
-    float best = params.alpha * params.radius + 2.0;
-    float radius2 = square(params.radius);
+    low = vec3(kInfinity);
+    high = vec3(-kInfinity);
+    [[unroll]] for (uint k = 0u; k < kRun; ++k)
+    {
+        DiffusePoint point = loadDiffusePoint(min(pixel + k, params.point_count - 1u));
+        x[k] = point.position;
+        n[k] = octahedralToUnit(point.normal);
+        reflectance[k] = pixel + k < params.point_count ? point.reflectance : vec3(0.0);
+        sum[k] = vec4(0.0);
+        if (reflectance[k] != vec3(0.0))
+        {
+            low = min(low, x[k]);
+            high = max(high, x[k]);
+        }
+    }
+    return low.x <= high.x;
+}
+
+/// Gives the pixels that no sample accepts the irradiance of the sample of least variation within params.radius.
+void takeNearest(vec3 low, vec3 high)
+{
+    float best[kRun];
+    float farthest = params.alpha * params.radius + 2.0;
+    uint missing = 0u;
+    [[unroll]] for (uint k = 0u; k < kRun; ++k)
+    {
+        bool is_missing = sum[k].w == 0.0 && reflectance[k] != vec3(0.0);
+        best[k] = is_missing ? farthest : -1.0;
+        missing += uint(is_missing);
+    }
+    if (missing == 0u)
+        return;
     uint first, end;
     beginRanges(size.count);
-    while (nextRange(x, radius2, first, end))
+    while (nextRange(low, high, square(min(params.radius, farthest / params.alpha)), first, end))
         for (uint i = first; i < end; ++i)
         {
-            float eps = geometricVariation(params.alpha, x, n, samples[i].position, unpackNormal(samples[i].normal));
-            if (eps < best)
+            SampleTexels s = loadSample(i);
+            farthest = 0.0;
+            [[unroll]] for (uint k = 0u; k < kRun; ++k)
             {
-                best = eps;
-                nearest = i;
-                radius2 = min(radius2, square(best / params.alpha));
+                float eps = geometricVariation(params.alpha, x[k], n[k], s.position, s.normal);
+                if (eps < best[k])
+                {
+                    best[k] = eps;
+                    sum[k] = vec4(s.irradiance, 1.0);
+                }
+                farthest = max(farthest, best[k]);
             }
         }
-    atomicAdd(statistics.fallbacks, 1u);
-    if (nearest == kNone)
-    {
-        atomicAdd(statistics.unlit, 1u);
-        return vec3(0.0);
-    }
-    return samples[nearest].irradiance;
-}
-
-vec3 interpolatedIrradiance(vec3 x, vec3 n)
-{
-    vec3 sum = vec3(0.0);
-    float weights = 0.0;
-    uint first, end;
-    beginRanges(size.count);
-    while (nextRange(x, 0.0, first, end))
-        for (uint i = first; i < end; ++i)
-        {
-            Sample s = samples[i];
-            float weight = sampleWeight(s, x, n);
-            sum += weight * s.irradiance;
-            weights += weight;
-        }
-    return weights > 0.0 ? sum / weights : nearestIrradiance(x, n);
+    uint unlit = 0u;
+    [[unroll]] for (uint k = 0u; k < kRun; ++k)
+        unlit += uint(sum[k].w == 0.0 && reflectance[k] != vec3(0.0));
+    atomicAdd(statistics.fallbacks, missing);
+    atomicAdd(statistics.unlit, unlit);
 }
 
 void main()
 {
-    uint pixel = gl_GlobalInvocationID.x;
-    if (pixel >= params.point_count || points[pixel].slot == kNone)
+    uint pixel = gl_GlobalInvocationID.x * kRun;
+    vec3 low, high;
+    if (pixel >= params.point_count || !loadRun(pixel, low, high))
         return;
-    ShadingPoint point = points[pixel];
-    Surface s = surfaceAt(point.slot, point.barycentrics, point.direction);
-    Bsdf b = bsdfAt(materialAt(s), s.front);
-    vec3 reflectance = point.throughput * diffuseReflectance(b, max(0.0, -dot(s.normal, point.direction)));
-    if (params.white != 0u)
-        reflectance = mix(vec3(0.0), vec3(1.0), notEqual(reflectance, vec3(0.0)));
-    if (reflectance != vec3(0.0))
-        radiance[pixel] += reflectance * kInvPi * interpolatedIrradiance(s.position, s.smooth_normal);
+    uint first, end;
+    beginRanges(size.count);
+    while (nextRange(low, high, 0.0, first, end))
+        for (uint i = first; i < end; ++i)
+        {
+            SampleTexels s = loadSample(i);
+            [[unroll]] for (uint k = 0u; k < kRun; ++k)
+                sum[k] += sampleWeight(s, x[k], n[k]) * vec4(s.irradiance, 1.0);
+        }
+    takeNearest(low, high);
+    [[unroll]] for (uint k = 0u; k < kRun; ++k)
+        if (sum[k].w > 0.0 && reflectance[k] != vec3(0.0))
+        {
+            vec3 shown = params.white != 0u ? vec3(notEqual(reflectance[k], vec3(0.0))) : reflectance[k];
+            radiance[pixel + k] += shown * kInvPi * (sum[k].rgb / sum[k].w);
+        }
 }

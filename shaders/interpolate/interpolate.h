@@ -5,6 +5,17 @@
 
 GPU_NAMESPACE_BEGIN
 
+struct SampleTexels // a Sample as interpolation reads it, three texels
+{
+    vec3 position; // metres
+    float support2; // square metres: the support's square
+    vec3 normal;
+    float harmonic; // metres
+    vec3 irradiance;
+    float inverse_harmonic;
+};
+GPU_SIZE(SampleTexels, 48);
+
 struct InterpolateParams
 {
     uint point_count;

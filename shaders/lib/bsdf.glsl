@@ -35,7 +35,7 @@ Bsdf bsdfAt(SurfaceMaterial m, bool front)
     b.metallic = hasFeature(kFeatureMetal) ? m.metallic : 0.0;
     b.f0 = min(square((m.ior - 1.0) / (m.ior + 1.0)) * m.specular_color, vec3(1.0)) * m.specular;
     b.f90 = m.specular;
-    b.smooth_specular = m.roughness < kSmoothRoughness;
+    b.smooth_specular = hasFeature(kFeatureSpecular) && m.roughness < kSmoothRoughness;
     b.alpha = max(square(m.roughness), square(kSmoothRoughness));
     b.transmission = hasFeature(kFeatureTransmission) ? m.transmission : 0.0;
     b.thin = (m.flags & kMaterialThin) != 0u;

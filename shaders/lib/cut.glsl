@@ -1,9 +1,15 @@
-// Reading the illumination cut. The kernel declares `buffer CutSize { QueueSize cut_size; }`, `buffer TreeNodes` (of the cut)
-// and `buffer CutNodes { CutNode cut_nodes[]; }` before it includes this. Functions only.
+// Reading the illumination cut. The kernel declares `buffer CutSize { QueueSize cut_size; }` and the usamplerBuffers
+// TreeNodes (of the cut) and CutNodes before it includes this. Functions only.
 #ifndef LIB_CUT_GLSL
 #define LIB_CUT_GLSL
 #include "shaders/lib/cut_node.glsl"
 #include "shaders/lib/tree.glsl"
+
+CutNode loadCutNode(uint index)
+{
+    uvec4 a = texelFetch(CutNodes, int(2u * index)), b = texelFetch(CutNodes, int(2u * index + 1u));
+    return CutNode(uintBitsToFloat(a.xyz), uintBitsToFloat(a.w), uintBitsToFloat(b.xyz), b.w);
+}
 
 /// The nearest cut node that faces the same way, within sqrt(radius2); kNone where there is none.
 uint nearestCutNode(vec3 x, vec3 n, float radius2)
@@ -14,8 +20,8 @@ uint nearestCutNode(vec3 x, vec3 n, float radius2)
     while (nextRange(x, radius2, first, end))
         for (uint i = first; i < end; ++i)
         {
-            vec3 normal = unpackNormal(cut_nodes[i].normal);
-            float distance2 = surfaceDistance2(cut_nodes[i].center - x, normal);
+            vec3 normal = unpackNormal(loadCutNode(i).normal);
+            float distance2 = surfaceDistance2(loadCutNode(i).center - x, normal);
             if (distance2 < radius2 && dot(n, normal) > 0.2)
             {
                 radius2 = distance2;
@@ -31,7 +37,7 @@ vec3 nearestCutIrradiance(vec3 x, vec3 n, float radius2)
     uint nearest = nearestCutNode(x, n, radius2);
     if (nearest == kNone)
         return vec3(0.0);
-    return cut_nodes[nearest].irradiance;
+    return loadCutNode(nearest).irradiance;
 }
 
 /// Irradiance at x: the sum of what the cut nodes around it spread there. 0 where no photon fell near: what light there is
@@ -44,7 +50,7 @@ vec3 cutIrradiance(vec3 x, vec3 n)
     while (nextRange(x, 0.0, first, end))
         for (uint i = first; i < end; ++i)
         {
-            CutNode node = cut_nodes[i];
+            CutNode node = loadCutNode(i);
             sum += cutWeight(node, x, n) * node.irradiance;
         }
     return sum;

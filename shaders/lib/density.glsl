@@ -1,10 +1,10 @@
-// Density estimation among photons: irradiance at a point from its k nearest photons (Jensen 1996). The kernel declares
-// `buffer TreeNodes` and `buffer Photons { Photon photons[]; }`, sorted as the tree, before it includes this. Functions only.
+// Density estimation among photons: irradiance at a point from its k nearest photons (Jensen 1996). The kernel declares the
+// usamplerBuffers TreeNodes and Photons, sorted as the tree, before it includes this. Functions only.
 #ifndef LIB_DENSITY_GLSL
 #define LIB_DENSITY_GLSL
 #include "shaders/lib/math.glsl"
+#include "shaders/lib/photon.glsl"
 #include "shaders/lib/tree.glsl"
-#include "shaders/photons/photons.h"
 
 const uint kDensityBins = 32u;
 const uint kDensityRefinements = 3u; // histograms, each within one bin of the one before
@@ -34,7 +34,7 @@ float nearestRadius2(vec3 x, vec3 n, uint photon_count, uint wanted, float radiu
         while (nextRange(x, high, first, end))
             for (uint i = first; i < end; ++i)
             {
-                float d2 = photonDistance2(photons[i], x, n);
+                float d2 = photonDistance2(loadPhoton(i), x, n);
                 if (d2 >= low && d2 < high)
                     ++bins[min(uint((d2 - low) * scale), kDensityBins - 1u)];
             }
@@ -84,9 +84,9 @@ DensityEstimate estimateIrradiance(vec3 x, vec3 n, uint photon_count, uint wante
     while (nextRange(x, within2, first, end))
         for (uint i = first; i < end; ++i)
         {
-            float d2 = photonDistance2(photons[i], x, n);
+            float d2 = photonDistance2(loadPhoton(i), x, n);
             if (d2 < within2)
-                sum += photons[i].power * square(1.0 - d2 / within2);
+                sum += loadPhoton(i).power * square(1.0 - d2 / within2);
         }
     return DensityEstimate(sum * (3.0 * kInvPi / within2), within2);
 }

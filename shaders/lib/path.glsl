@@ -10,18 +10,19 @@
 /// The sampler of a path at its vertex number `depth`.
 Sampler vertexSampler(uint path, uint depth, uint pixel_count, uint first_sample, uint seed)
 {
-    return Sampler(hash(seed, path % pixel_count), first_sample + path / pixel_count, kCameraDimensions + depth * kVertexDimensions);
+    uint sample_ = path / pixel_count; // one division: software Vulkan makes them one by one
+    return Sampler(hash(seed, path - sample_ * pixel_count), first_sample + sample_, kCameraDimensions + depth * kVertexDimensions);
 }
 
 /// What an absorbing medium leaves of light over `distance` metres (Beer-Lambert).
 vec3 mediumTransmittance(uint medium, float distance)
 {
-    return medium == kNone ? vec3(1.0) : exp(-loadMaterial(medium).absorption * distance);
+    return !hasFeature(kFeatureTransmission) || medium == kNone ? vec3(1.0) : exp(-loadMaterial(medium).absorption * distance);
 }
 
 bool enclosesMedium(Surface s, SurfaceMaterial m)
 {
-    return m.transmission > 0.0 && (m.flags & kMaterialThin) == 0u;
+    return hasFeature(kFeatureTransmission) && m.transmission > 0.0 && (m.flags & kMaterialThin) == 0u;
 }
 
 /// The medium a ray crossed to reach s: the one its path entered, or, when it started inside, that of s itself.

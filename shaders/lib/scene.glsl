@@ -14,6 +14,7 @@ const bool kSceneHasTranslucency = (kSceneFeatures & (kFeatureAlpha | kFeatureTh
 layout(set = 0, binding = kSceneInfoBinding, scalar) uniform SceneBlock { SceneInfo scene; };
 // What every ray reads lies in texel buffers of four 32-bit words a texel: software Vulkan fetches a texel with one wide
 // load, where a storage buffer costs it one bounds-checked load a word (twice the rays a second; no difference on a GPU).
+// Kernels read trees, photons, samples, rays and hits in set 1 likewise (Device::texelArray); each has its load function.
 layout(set = 0, binding = kBvhNodesBinding) uniform usamplerBuffer bvh_nodes;
 layout(set = 0, binding = kBvhTrianglesBinding) uniform usamplerBuffer bvh_triangles;
 layout(set = 0, binding = kTrianglesBinding) uniform usamplerBuffer triangles;

@@ -9,7 +9,7 @@ CutNode spreadNode(uint id, PhotonNode node, float support)
 {
     vec3 power;
     if (isPhoton(id))
-        power = photons[id + 1u - size.count].power;
+        power = loadPhoton(id + 1u - size.count).power;
     else
         power = sums[id].power;
     support = max(support, 1e-6);

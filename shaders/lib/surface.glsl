@@ -79,8 +79,8 @@ Surface surfaceAt(uint slot, vec2 barycentrics, vec3 direction)
     s.geometric_normal = twice_area / doubled;
     uvec3 v = loadTriangle(s.triangle).vertices;
     s.uv0 = interpolate(weights, loadVertex(v.x).uv0, loadVertex(v.y).uv0, loadVertex(v.z).uv0);
-    s.uv1 = interpolate(weights, loadVertex(v.x).uv1, loadVertex(v.y).uv1, loadVertex(v.z).uv1);
-    s.color = interpolate(weights, vertexColor(v.x), vertexColor(v.y), vertexColor(v.z));
+    s.uv1 = hasFeature(kFeatureSecondUv) ? interpolate(weights, loadVertex(v.x).uv1, loadVertex(v.y).uv1, loadVertex(v.z).uv1) : vec2(0.0);
+    s.color = hasFeature(kFeatureVertexColors) ? interpolate(weights, vertexColor(v.x), vertexColor(v.y), vertexColor(v.z)) : vec4(1.0);
     vec3 normal = interpolate(weights, unpackNormal(loadVertex(v.x).normal), unpackNormal(loadVertex(v.y).normal),
                               unpackNormal(loadVertex(v.z).normal));
     s.normal = dot(normal, normal) > 1e-12 ? normalize(normal) : s.geometric_normal;
@@ -126,7 +126,7 @@ SurfaceMaterial materialAt(Surface s)
     m.emission = surfaceEmission(s.material, s.uv0, s.uv1);
 
     uint ref = loadMaterial(s.material).base_color_texture;
-    if (ref != kNone)
+    if (hasFeature(kFeatureBaseColorMaps) && ref != kNone)
         m.base_color *= sampleTexture(ref, s.uv0, s.uv1, 0.0).rgb;
     ref = loadMaterial(s.material).metallic_roughness_texture;
     if (hasFeature(kFeatureMetallicRoughnessMaps) && ref != kNone)

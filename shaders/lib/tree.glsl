@@ -1,10 +1,18 @@
 // Range search in a tree over spheres: the one traversal that every nearest-neighbour and density query uses.
-// The kernel declares `buffer TreeNodes { TreeNode tree_nodes[]; }` before it includes this. Functions only.
+// The kernel declares `usamplerBuffer TreeNodes` before it includes this. Functions only.
 #ifndef LIB_TREE_GLSL
 #define LIB_TREE_GLSL
 #include "shaders/tree/tree.h"
 
 const uint kTreeStackSize = 64u; // 30 key bits, then ties by index: depth 30 + 32 at most
+
+TreeNode loadTreeNode(uint index)
+{
+    int row = int(4u * index);
+    uvec4 a = texelFetch(TreeNodes, row), b = texelFetch(TreeNodes, row + 1);
+    uvec4 c = texelFetch(TreeNodes, row + 2), d = texelFetch(TreeNodes, row + 3);
+    return TreeNode(uintBitsToFloat(a.xyz), a.w, uintBitsToFloat(b.xyz), b.w, uintBitsToFloat(c.xyz), c.w, uintBitsToFloat(d.xyz), d.w);
+}
 
 // Ranges still to be visited: node and count with the side in the top bit. Module scope: no copies.
 uvec2 tree_stack[kTreeStackSize];
@@ -18,15 +26,17 @@ void beginRanges(uint count)
         tree_stack[tree_depth++] = uvec2(0u, count);
 }
 
-float boxDistance2(vec3 p, vec3 low, vec3 high)
+/// Between two boxes.
+float boxDistance2(vec3 a_low, vec3 a_high, vec3 b_low, vec3 b_high)
 {
-    vec3 outside = max(max(low - p, p - high), vec3(0.0));
+    vec3 outside = max(max(b_low - a_high, a_low - b_high), vec3(0.0));
     return dot(outside, outside);
 }
 
-/// The next range [first, end) of sorted spheres, nearer ones first, whose bounds come within sqrt(radius2) of p; radius2 may shrink from call to
-/// call. Ranges are short (kTreeBucket) and disjoint. @return false when there is none left
-bool nextRange(vec3 p, float radius2, out uint first, out uint end)
+/// The next range [first, end) of sorted spheres, nearer ones first, whose bounds come within sqrt(radius2) of the box from
+/// low to high; radius2 may shrink from call to call. Ranges are short (kTreeBucket) and disjoint.
+/// @return false when there is none left
+bool nextRange(vec3 low, vec3 high, float radius2, out uint first, out uint end)
 {
     while (tree_depth > 0u)
     {
@@ -37,10 +47,11 @@ bool nextRange(vec3 p, float radius2, out uint first, out uint end)
         end = first + count;
         if (count <= kTreeBucket)
             return true;
-        TreeNode node = tree_nodes[top.x];
+        TreeNode node = loadTreeNode(top.x);
         uint left = node.left & ~kTreeLeafBit;
         uvec2 near = uvec2(left, left + 1u - first), far = uvec2(left + 1u, (end - left - 1u) | kTreeLeafBit);
-        float near2 = boxDistance2(p, node.left_min, node.left_max), far2 = boxDistance2(p, node.right_min, node.right_max);
+        float near2 = boxDistance2(low, high, node.left_min, node.left_max);
+        float far2 = boxDistance2(low, high, node.right_min, node.right_max);
         if (far2 < near2)
         {
             uvec2 swapped = near;
@@ -57,5 +68,8 @@ bool nextRange(vec3 p, float radius2, out uint first, out uint end)
     }
     return false;
 }
+
+/// The same around a point.
+bool nextRange(vec3 p, float radius2, out uint first, out uint end) { return nextRange(p, p, radius2, first, end); }
 
 #endif

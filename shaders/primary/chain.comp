@@ -11,45 +11,30 @@ layout(local_size_x = kRaysGroupSize) in;
 layout(push_constant, scalar) uniform Params { ChainParams params; };
 
 layout(set = 1, binding = 0, scalar) readonly buffer Queue { QueueSize queue; };
-layout(set = 1, binding = 1, scalar) readonly buffer Rays { Ray rays[]; };
-layout(set = 1, binding = 2, scalar) readonly buffer Hits { Hit hits[]; };
+layout(set = 1, binding = 1) uniform usamplerBuffer Rays;
+layout(set = 1, binding = 2) uniform usamplerBuffer Hits;
 layout(set = 1, binding = 3, scalar) buffer Points { ShadingPoint points[]; };
 layout(set = 1, binding = 4, scalar) buffer Radiance { vec3 radiance[]; };
 layout(set = 1, binding = 5, scalar) buffer NextQueue { QueueSize next_queue; };
 layout(set = 1, binding = 6, scalar) writeonly buffer NextRays { Ray next_rays[]; };
+layout(set = 1, binding = 7, scalar) writeonly buffer DiffusePoints { DiffusePoint diffuse_points[]; };
+#include "shaders/lib/hit.glsl"
+#include "shaders/lib/ray.glsl"
 
-// Until a chain is finished its point holds the throughput so far and, in `slot`, the medium the ray is in.
-void finish(uint path, vec3 light)
+/// What a chain's ray that met something does there. `point` and `diffuse` are updated where it is the shading point, and
+/// `point` where the chain goes on: until it is finished its point holds the throughput so far and, in `slot`, the medium
+/// that the ray is in. @return radiance that the surface itself sends along the ray
+vec3 meetSurface(Hit hit, uint path, inout ShadingPoint point, inout DiffusePoint diffuse)
 {
-    points[path].slot = kNone;
-    if (params.depth == 0u)
-        radiance[path] = light;
-    else
-        radiance[path] += light;
-}
-
-void main()
-{
-    uint i = gl_GlobalInvocationID.x;
-    if (i >= queue.count)
-        return;
-    uint path = rays[i].path;
-    vec3 direction = rays[i].direction;
-    Hit hit = hits[i];
-    vec3 throughput = params.depth == 0u ? vec3(1.0) : points[path].throughput;
-    uint medium = params.depth == 0u ? kNone : points[path].slot;
-    if (hit.slot == kNone)
-    {
-        finish(path, throughput * environmentRadiance(direction));
-        return;
-    }
+    vec3 direction = point.direction;
+    uint medium = point.slot;
+    point.slot = kNone;
     Surface s = surfaceAt(hit.slot, hit.barycentrics, direction);
     SurfaceMaterial m = materialAt(s);
-    throughput *= mediumTransmittance(crossedMedium(medium, s, m), hit.t);
-    bool unlit = (m.flags & kMaterialUnlit) != 0u;
-    finish(path, throughput * (unlit ? m.base_color : emits(s) ? m.emission : vec3(0.0)));
-    if (unlit)
-        return;
+    vec3 throughput = point.throughput * mediumTransmittance(crossedMedium(medium, s, m), hit.t);
+    if ((m.flags & kMaterialUnlit) != 0u)
+        return throughput * m.base_color;
+    vec3 light = emits(s) ? throughput * m.emission : vec3(0.0);
 
     Bsdf b = bsdfAt(m, s.front);
     mat3 frame = frameAround(s.normal);
@@ -60,16 +45,48 @@ void main()
     if (!b.smooth_specular || choice < p.diffuse)
     {
         throughput /= b.smooth_specular ? p.diffuse : 1.0;
-        points[path] = ShadingPoint(s.position, hit.slot, direction, params.depth, throughput, hit.barycentrics);
-        return;
+        vec3 reflectance = throughput * diffuseReflectance(b, max(0.0, -dot(s.normal, direction)));
+        point = ShadingPoint(s.position, hit.slot, direction, params.depth, throughput, hit.barycentrics);
+        diffuse = DiffusePoint(s.position, unitToOctahedral(s.smooth_normal), reflectance);
+        return light;
     }
     BsdfSample next = sampleBsdf(b, wo, choice, vec2(0.5));
     vec3 wi = frame * next.wi;
     if (params.depth >= params.depth_limit || next.weight == vec3(0.0) || !sidesAgree(s, wi, next.wi.z))
-        return;
+        return light;
     if (next.wi.z < 0.0 && !next.passed)
         medium = s.front && enclosesMedium(s, m) ? s.material : kNone;
-    points[path].throughput = throughput * next.weight;
-    points[path].slot = medium;
+    point.throughput = throughput * next.weight;
+    point.slot = medium;
     next_rays[atomicAdd(next_queue.count, 1u)] = leavingRay(s, wi, kInfinity, path);
+    return light;
+}
+
+void main()
+{
+    uint i = gl_GlobalInvocationID.x;
+    if (i >= queue.count)
+        return;
+    Ray ray = loadRay(i);
+    Hit hit = loadHit(i);
+    ShadingPoint point = ShadingPoint(vec3(0.0), kNone, ray.direction, params.depth, vec3(1.0), vec2(0.0));
+    vec3 before = vec3(0.0);
+    if (params.depth > 0u)
+    {
+        point.throughput = points[ray.path].throughput;
+        point.slot = points[ray.path].slot;
+        before = radiance[ray.path];
+    }
+    DiffusePoint diffuse = DiffusePoint(vec3(0.0), vec2(0.0), vec3(0.0));
+    vec3 light;
+    if (hit.slot != kNone)
+        light = meetSurface(hit, ray.path, point, diffuse);
+    else
+    {
+        light = point.throughput * environmentRadiance(ray.direction);
+        point.slot = kNone;
+    }
+    points[ray.path] = point;
+    diffuse_points[ray.path] = diffuse;
+    radiance[ray.path] = before + light;
 }

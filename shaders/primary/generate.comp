@@ -18,9 +18,10 @@ void main()
     uint pixel_count = params.width * params.height;
     if (path >= pixel_count * params.sample_count)
         return;
-    uint pixel = path % pixel_count;
-    Sampler s = Sampler(hash(params.seed, pixel), params.first_sample + path / pixel_count, 0u);
-    vec2 position = vec2(pixel % params.width, pixel / params.width) + nextPair(s);
+    uint sample_ = path / pixel_count, pixel = path - sample_ * pixel_count;
+    uint row = pixel / params.width, column = pixel - row * params.width;
+    Sampler s = Sampler(hash(params.seed, pixel), params.first_sample + sample_, 0u);
+    vec2 position = vec2(column, row) + nextPair(s);
     vec2 image = vec2(2.0, -2.0) * position / vec2(params.width, params.height) + vec2(-1.0, 1.0);
     vec3 offset = image.x * params.right + image.y * params.up;
     Ray ray = Ray(params.position, kInfinity, params.forward, path);

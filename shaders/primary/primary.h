@@ -42,6 +42,14 @@ struct ShadingPoint // where a pixel's light is to be found: first vertex after 
 };
 GPU_SIZE(ShadingPoint, 52);
 
+struct DiffusePoint // what a shading point shows of the irradiance that falls on it, so that nobody works it out again
+{
+    vec3 position;    // metres, world
+    vec2 normal;      // octahedral; the smooth one, before the normal map, on the viewer's side
+    vec3 reflectance; // towards the viewer: throughput x diffuse reflectance; 0: background, or nothing diffuse there
+};
+GPU_SIZE(DiffusePoint, 32);
+
 // Pairs of the pixel's sampler, so that no two uses share one: camera first, then the same number for every vertex.
 GPU_CONST uint kCameraDimensions = 1u;
 GPU_CONST uint kVertexDimensions = 8u;

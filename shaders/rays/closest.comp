@@ -9,14 +9,15 @@ layout(local_size_x = kRaysGroupSize) in;
 layout(push_constant, scalar) uniform Params { RaysParams params; };
 
 layout(set = 1, binding = 0, scalar) readonly buffer Queue { QueueSize queue; };
-layout(set = 1, binding = 1, scalar) readonly buffer Rays { Ray rays[]; };
+layout(set = 1, binding = 1) uniform usamplerBuffer Rays;
 layout(set = 1, binding = 2, scalar) writeonly buffer Hits { Hit hits[]; };
+#include "shaders/lib/ray.glsl"
 
 void main()
 {
     uint i = gl_GlobalInvocationID.x;
     if (i >= queue.count)
         return;
-    Ray ray = rays[i];
+    Ray ray = loadRay(i);
     hits[i] = closestHit(ray.origin, ray.direction, 0.0, ray.t_max, hash(params.seed, ray.path));
 }

@@ -15,7 +15,7 @@ layout(push_constant, scalar) uniform Params { ClusterParams params; };
 layout(set = 1, binding = 0, scalar) readonly buffer Size { QueueSize size; };
 layout(set = 1, binding = 1, scalar) readonly buffer Points { SamplePoint points[]; };
 layout(set = 1, binding = 2, scalar) readonly buffer Clusters { Cluster clusters[]; };
-layout(set = 1, binding = 3, scalar) readonly buffer TreeNodes { TreeNode tree_nodes[]; };
+layout(set = 1, binding = 3) uniform usamplerBuffer TreeNodes;
 layout(set = 1, binding = 4, scalar) readonly buffer Order { uint order[]; };
 layout(set = 1, binding = 5, scalar) buffer Sums { ClusterSums sums[]; };
 layout(set = 1, binding = 6, scalar) writeonly buffer Owners { uvec2 owners[]; }; // by point: cluster, bits of eps

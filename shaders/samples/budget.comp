@@ -33,7 +33,10 @@ void main()
     float share_sum = 0.0, count_sum = 0.0;
     for (uint c = 0u; c < 4u; ++c)
     {
-        counts[c] = params.level > 1u ? nodes[below + 4u * i + c].count : uint(points[4u * i + c].pixel != kNone);
+        if (params.level > 1u)
+            counts[c] = nodes[below + 4u * i + c].count;
+        else
+            counts[c] = 4u * i + c < points.length() ? uint(points[4u * i + c].pixel != kNone) : 0u;
         shares[c] = params.level > 1u && params.uniform_ == 0u && counts[c] > 0u ? float(nodes[below + 4u * i + c].variation) : 0.0;
         share_sum += shares[c];
         count_sum += float(counts[c]);

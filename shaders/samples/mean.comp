@@ -16,9 +16,9 @@ QuadNode child(uint i)
 {
     if (params.level > 1u)
         return nodes[levelOffset(params.level - 1u, params.levels) + i];
-    SamplePoint point = points[i];
-    if (point.pixel == kNone)
+    if (i >= points.length() || points[i].pixel == kNone)
         return QuadNode(vec3(0.0), 0u, vec3(0.0), 0u);
+    SamplePoint point = points[i];
     return QuadNode(point.position, 1u, unpackNormal(point.normal), 0u);
 }
 

@@ -1,17 +1,18 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#include "shaders/lib/bsdf.glsl"
+#include "shaders/lib/math.glsl"
 #include "shaders/lib/random.glsl"
 #include "shaders/samples/samples.h"
 
-// Picks one shading point of every stride x stride block of pixels. One thread per point of the quadtree's square.
+// Picks one shading point of every stride x stride block of pixels. One thread per point, in Z-order.
 
 layout(local_size_x = kSamplesGroupSize) in;
 layout(push_constant, scalar) uniform Params { PointParams params; };
 
-layout(set = 1, binding = 0, scalar) readonly buffer ShadingPoints { ShadingPoint shading[]; };
+layout(set = 1, binding = 0) uniform usamplerBuffer DiffusePoints;
 layout(set = 1, binding = 1, scalar) writeonly buffer Points { SamplePoint points[]; };
+#include "shaders/lib/diffuse_point.glsl"
 
 uint evenBits(uint x) // the inverse of spreading bits by one
 {
@@ -25,7 +26,7 @@ uint evenBits(uint x) // the inverse of spreading bits by one
 void main()
 {
     uint i = gl_GlobalInvocationID.x;
-    if (i >= 1u << (2u * params.levels))
+    if (i >= points.length())
         return;
     uint random = hash(params.seed, i);
     uvec2 block = uvec2(evenBits(i), evenBits(i >> 1)) * params.stride;
@@ -33,11 +34,7 @@ void main()
     bool outside = block.x >= params.width || block.y >= params.height;
     pixel = min(pixel, uvec2(params.width, params.height) - 1u);
     uint index = pixel.y * params.width + pixel.x;
-    points[i] = SamplePoint(vec3(0.0), 0u, kNone);
-    if (outside || shading[index].slot == kNone)
-        return;
-    ShadingPoint point = shading[index];
-    Surface s = surfaceAt(point.slot, point.barycentrics, point.direction);
-    if (diffuseColor(bsdfAt(materialAt(s), s.front)) != vec3(0.0))
-        points[i] = SamplePoint(s.position, packNormal(s.smooth_normal), index);
+    DiffusePoint point = loadDiffusePoint(index);
+    bool takes_part = !outside && point.reflectance != vec3(0.0);
+    points[i] = SamplePoint(point.position, packSnorm2x16(point.normal), takes_part ? index : kNone);
 }

@@ -63,10 +63,9 @@ struct PointParams
     uint width; // pixels
     uint height;
     uint stride; // pixels between points
-    uint levels; // of the quadtree
     uint seed;
 };
-GPU_SIZE(PointParams, 20);
+GPU_SIZE(PointParams, 16);
 
 struct SeedParams
 {

@@ -33,7 +33,7 @@ void main()
     uint i = gl_GlobalInvocationID.x;
     uint local_ = gl_LocalInvocationID.x;
     SamplePoint point = SamplePoint(vec3(0.0), 0u, kNone);
-    if (i < levelCount(0u, params.levels))
+    if (i < points.length())
         point = points[i];
     for (uint level = 1u; level <= params.levels; ++level)
     {

@@ -11,8 +11,8 @@ layout(local_size_x = kRaysGroupSize) in;
 layout(push_constant, scalar) uniform Params { ViewParams params; };
 
 layout(set = 1, binding = 0, scalar) readonly buffer CutSize { QueueSize cut_size; };
-layout(set = 1, binding = 1, scalar) readonly buffer TreeNodes { TreeNode tree_nodes[]; };
-layout(set = 1, binding = 2, scalar) readonly buffer CutNodes { CutNode cut_nodes[]; };
+layout(set = 1, binding = 1) uniform usamplerBuffer TreeNodes;
+layout(set = 1, binding = 2) uniform usamplerBuffer CutNodes;
 layout(set = 1, binding = 3, scalar) readonly buffer Points { ShadingPoint points[]; };
 layout(set = 1, binding = 4, scalar) buffer Radiance { vec3 radiance[]; };
 #include "shaders/lib/cut.glsl"

@@ -11,7 +11,7 @@ layout(local_size_x = kRaysGroupSize) in;
 layout(push_constant, scalar) uniform Params { ViewParams params; };
 
 layout(set = 1, binding = 0, scalar) readonly buffer Size { QueueSize size; };
-layout(set = 1, binding = 1, scalar) readonly buffer TreeNodes { TreeNode tree_nodes[]; };
+layout(set = 1, binding = 1) uniform usamplerBuffer TreeNodes;
 layout(set = 1, binding = 2, scalar) readonly buffer Points { ShadingPoint points[]; };
 layout(set = 1, binding = 3, scalar) buffer Radiance { vec3 radiance[]; };
 #include "shaders/lib/tree.glsl"
@@ -19,17 +19,16 @@ layout(set = 1, binding = 3, scalar) buffer Radiance { vec3 radiance[]; };
 /// Index of the first photon of x's node: down from the root to the nearer child while there are more than `most` in it.
 uint firstOfNode(vec3 x, uint most)
 {
-    uint node = 0u;
-    while (tree_nodes[node].count > most)
+    TreeNode node = loadTreeNode(0u);
+    while (node.count > most)
     {
-        float left2 = boxDistance2(x, tree_nodes[node].left_min, tree_nodes[node].left_max);
-        float right2 = boxDistance2(x, tree_nodes[node].right_min, tree_nodes[node].right_max);
-        uint child = left2 <= right2 ? tree_nodes[node].left : tree_nodes[node].right;
+        float left2 = boxDistance2(x, x, node.left_min, node.left_max), right2 = boxDistance2(x, x, node.right_min, node.right_max);
+        uint child = left2 <= right2 ? node.left : node.right;
         if ((child & kTreeLeafBit) != 0u)
             return child & ~kTreeLeafBit;
-        node = child;
+        node = loadTreeNode(child);
     }
-    return tree_nodes[node].first;
+    return node.first;
 }
 
 void main()

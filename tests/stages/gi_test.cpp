@@ -53,7 +53,7 @@ std::unique_ptr<Cut> GiTest::cutOf(const SceneGpu& scene, const std::vector<gpu:
     submit(scene, [&](Recorder& rec) { cut->tree->record(rec, on_gpu, cut->size); });
     for (const uint32_t i : contents<uint32_t>(cut->tree->order(), count))
         cut->sorted.push_back(nodes[i]);
-    cut->nodes = upload("test.cut_nodes", cut->sorted);
+    cut->nodes = device().uploadTexels<gpu::CutNode>("test.cut_nodes", cut->sorted);
     cut->gpu.emplace(CutStage::Output{.size = cut->size, .nodes = cut->nodes, .tree = *cut->tree});
     return cut;
 }

@@ -52,8 +52,8 @@ protected:
         }
         RayQueue queue(device(), "test.queue", uint32_t(rays.size()));
         queue.size = sizeBuffer(uint32_t(rays.size()));
-        queue.rays = upload("test.rays", rays);
-        const Buffer hits = device().array<gpu::Hit>("test.hits", rays.size());
+        queue.rays = device().uploadTexels<gpu::Ray>("test.rays", rays);
+        const Buffer hits = device().texelArray<gpu::Hit>("test.hits", rays.size());
         submit(*scene_,
                [&](Recorder& rec)
                {

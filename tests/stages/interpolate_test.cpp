@@ -72,12 +72,12 @@ protected:
         const Buffer size = sizeBuffer(count), on_gpu = upload("test.samples", samples),
                      supports = upload("test.spheres", spheres);
         const Buffer radiance = upload("test.radiance", std::vector<gpu::vec3>(kWidth * kHeight, before));
-        const InterpolateStage stage(device(), *scene_, std::max(count, 1u));
+        const InterpolateStage stage(device(), std::max(count, 1u));
         submit(*scene_,
                [&](Recorder& rec)
                {
                    stage.record(rec, {.size = size, .samples = on_gpu, .spheres = supports},
-                                {.points = points_->gpu->points,
+                                {.diffuse_points = points_->gpu->diffuse_points,
                                  .radiance = radiance,
                                  .point_count = kWidth * kHeight,
                                  .alpha = float(kAlpha),

@@ -61,7 +61,7 @@ protected:
         const RayStage stage(device(), *scene.gpu);
         const uint32_t count = uint32_t(rays.size());
         RayQueue queue(device(), "test.queue", 1);
-        queue.rays = device().upload("test.rays", rays);
+        queue.rays = device().uploadTexels("test.rays", rays);
         const Buffer hits = device().array<gpu::Hit>("test.hits", count);
         Recorder rec(device());
         rec.begin(scene.gpu->descriptorSet());

@@ -387,7 +387,7 @@ TEST_F(Rays, BeyondTheQueuesCountAreLeftAlone)
     const std::vector<gpu::Ray> rays(kCapacity,
                                      {.origin = {0.5f, 0.25f, 0}, .t_max = kFar, .direction = {0, 0, 1}, .path = 0});
     RayQueue queue(device(), "test.queue", 1);
-    queue.rays = device().upload<gpu::Ray>("test.rays", rays);
+    queue.rays = device().uploadTexels<gpu::Ray>("test.rays", rays);
     const Buffer hits = device().array<gpu::Hit>("test.hits", kCapacity);
     Recorder rec(device());
     rec.begin(scene.gpu->descriptorSet());

@@ -2,6 +2,7 @@
 // synchronization validation; and what it says to callers who bind the wrong things.
 #include "runtime/stages/rays.h"
 #include "shaders/resolve/resolve.h"
+#include "shaders/samples/samples.h"
 #include "tests/stages/gpu_test.h"
 
 #include <functional>
@@ -205,6 +206,20 @@ TEST_F(RecorderDeathTest, NamesTheKernelsBlocksWhereABindingIsWrong)
                  "resolve/tonemap: 3 buffers given");
     EXPECT_DEATH(runTonemap(device(), params, {{"Sum", a}, {"Sum", a}}),
                  "resolve/tonemap: block 'Sum' is given twice; its blocks are (Sum Pixels|Pixels Sum)");
+}
+
+TEST_F(RecorderDeathTest, NamesABufferThatIsReadAsTexelsWithoutAView)
+{
+    GTEST_FLAG_SET(death_test_style, "threadsafe");
+    const Kernel kernel = device().kernel("samples/points");
+    const Buffer words = device().array<gpu::DiffusePoint>("test.words", 1), points = device().array<gpu::SamplePoint>("test.points", 1);
+    EXPECT_DEATH(
+        {
+            Recorder rec(device());
+            rec.begin(VK_NULL_HANDLE);
+            rec.run(kernel, 1, gpu::PointParams{}, {{"DiffusePoints", words}, {"Points", points}});
+        },
+        "samples/points: 'DiffusePoints' is read as texels, but buffer 'test.words' has no texel view");
 }
 
 TEST_F(RecorderDeathTest, RefusesParametersOfAnotherSize)

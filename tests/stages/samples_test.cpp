@@ -70,7 +70,7 @@ protected:
                [&](Recorder& rec)
                {
                    out.emplace(stage_->record(rec, rays,
-                                              {.shading_points = points_->gpu->points,
+                                              {.diffuse_points = points_->gpu->diffuse_points,
                                                .mode = mode,
                                                .budget = budget,
                                                .iterations = iterations,
@@ -215,7 +215,7 @@ TEST_F(SamplesTest, AreNoMoreThanThereAreShadingPoints)
            [&](Recorder& rec)
            {
                out.emplace(stage.record(rec, rays,
-                                        {.shading_points = few.gpu->points,
+                                        {.diffuse_points = few.gpu->diffuse_points,
                                          .mode = SamplesMode::kSeeded,
                                          .budget = kMostSamples,
                                          .iterations = 0,

@@ -99,7 +99,7 @@ protected:
                [&](Recorder& rec)
                {
                    (void)samples_stage_->record(rec, rays,
-                                                {.shading_points = points_->gpu->points,
+                                                {.diffuse_points = points_->gpu->diffuse_points,
                                                  .mode = mode,
                                                  .budget = budget,
                                                  .iterations = 3,
@@ -175,7 +175,7 @@ TEST_F(Views, ShowAsManyColorsAsThereAreClusters)
                { stage_->recordQuadtree(rec, in, samples_stage_->output(), samples_stage_->quadtree()); });
     const SamplesStage::Quadtree quadtree = samples_stage_->quadtree();
     ASSERT_EQ(quadtree.stride, 1u);
-    const auto owners = contents<gpu::uvec2>(quadtree.owners, 1u << (2 * quadtree.levels));
+    const auto owners = contents<gpu::uvec2>(quadtree.owners, quadtree.owners.size() / sizeof(gpu::uvec2));
     std::set<uint32_t> sample_pixels, clusters;
     for (const gpu::Sample& sample : samples_)
         sample_pixels.insert(sample.pixel);
