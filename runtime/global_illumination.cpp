@@ -32,6 +32,7 @@ struct GlobalIllumination::Frame
     uint32_t pixel_count;
     uint32_t index; // in a standing picture
     uint32_t seed;  // of this frame alone
+    bool by_harmonics; // rough reflection is from the samples' harmonics
     bool shows(uint32_t term) const
     {
         if (settings.view != gpu::kViewNone)
@@ -57,6 +58,7 @@ Status GlobalIllumination::checkCounts(uint64_t range, const Settings& settings)
 GlobalIllumination::GlobalIllumination(const Device& device, const SceneGpu& scene, const Settings& settings, uint32_t width,
                                        uint32_t height)
     : width_(width), height_(height), diagonal_(0), longest_side_(0), has_specular_(scene.hasFeature(gpu::kFeatureSpecular)),
+      reflects_roughly_(scene.reflectsRoughly()),
       has_caustic_targets_(scene.info().caustic_target_count > 0),
       has_mirrors_(has_caustic_targets_ || scene.hasFeature(gpu::kFeatureTransmission | gpu::kFeatureThin)), primary_(device, scene, width * height), direct_(device, scene, width * height),
       photons_(device, scene, PhotonKind::kGlobal, settings.photon_count, settings.photon_bounces),
@@ -77,15 +79,18 @@ GlobalIllumination::GlobalIllumination(const Device& device, const SceneGpu& sce
 const Buffer& GlobalIllumination::record(Recorder& rec, const RayStage& rays, const gpu::CameraParams& camera, const Settings& settings)
 {
     const auto primary = primary_.record(rec, rays, {.camera = camera, .specular_depth = settings.specular_depth});
-    const Frame frame{.rec = rec,
-                      .rays = rays,
-                      .camera = camera,
-                      .settings = settings,
-                      .points = primary.points,
-                      .radiance = primary.radiance,
-                      .pixel_count = width_ * height_,
-                      .index = camera.first_sample,
-                      .seed = traceSeed(camera.seed, camera.first_sample, gpu::kTermIndirect)};
+    Frame frame{.rec = rec,
+                .rays = rays,
+                .camera = camera,
+                .settings = settings,
+                .points = primary.points,
+                .radiance = primary.radiance,
+                .pixel_count = width_ * height_,
+                .index = camera.first_sample,
+                .seed = traceSeed(camera.seed, camera.first_sample, gpu::kTermIndirect),
+                .by_harmonics = false};
+    frame.by_harmonics = reflects_roughly_ && GlossyMode(settings.glossy_mode) == GlossyMode::kHarmonics && frame.index == 0 &&
+                         frame.shows(gpu::kTermGlossy);
     if (!frame.shows(gpu::kTermEmission))
         rec.clear(frame.radiance);
     if (frame.shows(gpu::kTermDirect))
@@ -95,7 +100,7 @@ const Buffer& GlobalIllumination::record(Recorder& rec, const RayStage& rays, co
     {
         const PhotonTreeStage::Output map = recordPhotons(frame);
         const CutStage::Output cut = recordCut(frame, map);
-        if (frame.shows(gpu::kTermIndirect))
+        if (frame.shows(gpu::kTermIndirect) || frame.by_harmonics)
             recordIndirect(frame, map, cut);
         if (glossy)
             recordGlossy(frame, cut);
@@ -179,16 +184,20 @@ void GlobalIllumination::recordIndirect(const Frame& frame, const PhotonTreeStag
                         .specular_depth = chainDepth(settings),
                         .photon_count = settings.density_photons,
                         .radius = settings.cut_mode == gpu::kCutKnn ? settings.density_radius * diagonal_ : radius,
-                        .seed = frame.seed});
+                        .seed = frame.seed,
+                        .by_direction = frame.by_harmonics});
     }
     const auto scope = frame.rec.scope("interpolate");
+    const InterpolateStage::Glossy glossy{.harmonics = gather_.harmonics(), .lobes = glossy_.lobes(), .shares = glossy_.shares()};
     interpolate_.record(frame.rec, samples,
                         {.points = frame.points,
                          .radiance = frame.radiance,
                          .point_count = frame.pixel_count,
                          .alpha = alpha,
                          .radius = radius,
-                         .white = settings.view == gpu::kViewIrradiance});
+                         .diffuse = frame.shows(gpu::kTermIndirect),
+                         .white = settings.view == gpu::kViewIrradiance,
+                         .glossy = frame.by_harmonics ? &glossy : nullptr});
 }
 
 void GlobalIllumination::recordGlossy(const Frame& frame, const CutStage::Output& cut) const
@@ -200,7 +209,8 @@ void GlobalIllumination::recordGlossy(const Frame& frame, const CutStage::Output
                     .point_count = frame.pixel_count,
                     .first_sample = frame.index,
                     .specular_depth = chainDepth(frame.settings),
-                    .seed = frame.camera.seed});
+                    .seed = frame.camera.seed,
+                    .shared = frame.by_harmonics});
 }
 
 void GlobalIllumination::recordCaustics(const Frame& frame) const

@@ -40,7 +40,7 @@ private:
 
     uint32_t width_, height_;
     float diagonal_, longest_side_; // of the scene, metres
-    bool has_specular_, has_caustic_targets_, has_mirrors_;
+    bool has_specular_, reflects_roughly_, has_caustic_targets_, has_mirrors_;
     PrimaryStage primary_;
     DirectStage direct_;
     PhotonStage photons_, caustic_photons_;

@@ -3,6 +3,7 @@
 #include "runtime/stages/cut.h"
 #include "runtime/stages/samples.h"
 #include "shaders/gather/gather.h"
+#include "shaders/gather/harmonics.h"
 
 class GatherStage
 {
@@ -17,15 +18,19 @@ public:
         uint32_t photon_count;   // k, in CutMode::kKnn
         float radius;            // metres: of density estimation, and how far a cut node may be
         uint32_t seed;
+        bool by_direction = false; // whether harmonics() is wanted; only in scenes with rough reflection
     };
     /// Sets irradiance and harmonic of samples.samples.
     void record(Recorder& rec, const RayStage& rays, const SamplesStage::Output& samples, const PhotonTreeStage::Output& map,
                 const CutStage::Output& cut, const Input& in) const;
 
+    /// The light of the samples by direction, as the last record() that was asked for it left it.
+    const Buffer& harmonics() const { return harmonics_; } // gpu::SampleHarmonics[samples]
+
 private:
     uint32_t max_samples_;
     bool has_specular_;
-    Kernel generate_, link_, link_knn_, sum_;
+    Kernel generate_, link_, link_knn_, sum_, project_;
     RayQueue queue_, next_queue_;
-    Buffer hits_, states_, gathered_;
+    Buffer hits_, states_, gathered_, harmonics_;
 };

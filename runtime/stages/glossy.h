@@ -1,4 +1,5 @@
-// Indirect light in rough mirrors: rays by the specular lobe that read the illumination cut where they end.
+// Indirect light in rough mirrors: rays by the specular lobe that read the illumination cut where they end. What the
+// interpolation has from the samples' spherical harmonics needs no ray.
 #pragma once
 #include "runtime/stages/cut.h"
 #include "runtime/stages/rays.h"
@@ -17,11 +18,15 @@ public:
         uint32_t first_sample;
         uint32_t specular_depth; // most delta events of a ray
         uint32_t seed;
+        bool shared = false; // whether shares() says what part of the light is there already
     };
     void record(Recorder& rec, const RayStage& rays, const CutStage::Output& cut, const Input& in) const;
+
+    const Buffer& lobes() const { return lobes_; }   // gpu::GlossyLobe[], glossyLobes()
+    const Buffer& shares() const { return shares_; } // float[max_pixels], for InterpolateStage to set
 
 private:
     Kernel generate_, link_;
     RayQueue queue_, next_queue_;
-    Buffer hits_, states_;
+    Buffer hits_, states_, lobes_, shares_;
 };

@@ -3,9 +3,11 @@
 #extension GL_EXT_scalar_block_layout : require
 #include "shaders/interpolate/interpolate.h"
 #include "shaders/lib/bsdf.glsl"
+#include "shaders/lib/harmonics.glsl"
 #include "shaders/lib/variation.glsl"
 
-// Indirect diffuse light of every pixel from the samples whose support holds its shading point. One thread per pixel.
+// Indirect diffuse light of every pixel from the samples whose support holds its shading point; and, where asked, what rough
+// lobes reflect of their light by direction, with the same weights. One thread per pixel.
 
 layout(local_size_x = kRaysGroupSize) in;
 layout(push_constant, scalar) uniform Params { InterpolateParams params; };
@@ -16,6 +18,11 @@ layout(set = 1, binding = 2, scalar) readonly buffer Samples { Sample samples[];
 layout(set = 1, binding = 3, scalar) readonly buffer Points { ShadingPoint points[]; };
 layout(set = 1, binding = 4, scalar) buffer Radiance { vec3 radiance[]; };
 layout(set = 1, binding = 5, scalar) buffer Statistics { InterpolateStatistics statistics; };
+layout(set = 1, binding = 6, scalar) readonly buffer Order { uint order[]; };
+layout(set = 1, binding = 7, scalar) readonly buffer Harmonics { SampleHarmonics harmonics[]; };
+layout(set = 1, binding = 8, scalar) readonly buffer Lobes { GlossyLobe lobes[]; };
+layout(set = 1, binding = 9, scalar) writeonly buffer Shares { float shares[]; }; // of glossy light that needs no ray
+layout(constant_id = 2) const bool kGlossy = false;
 #include "shaders/lib/tree.glsl"
 
 const float kLargestWeight = 100.0;
@@ -61,10 +68,25 @@ vec3 nearestIrradiance(vec3 x, vec3 n)
     return samples[nearest].irradiance;
 }
 
-vec3 interpolatedIrradiance(vec3 x, vec3 n)
+/// Light that a sample sends into the lobe, times its evenLight.
+vec3 incidentLight(Sample s, uint slot, Reflection r)
 {
-    vec3 sum = vec3(0.0);
-    float weights = 0.0;
+    uint w[12] = harmonics[slot].words;
+    return s.irradiance * max(vec3(channelLight(r, w[0], w[1], w[2], w[3]), channelLight(r, w[4], w[5], w[6], w[7]),
+                                   channelLight(r, w[8], w[9], w[10], w[11])), vec3(0.0));
+}
+
+struct Interpolated
+{
+    vec3 irradiance;
+    vec3 glossy;  // pi times the radiance that the lobe sees
+    bool reached; // by samples: else glossy is nothing
+};
+
+Interpolated interpolatedLight(vec3 x, vec3 n, Reflection r)
+{
+    vec3 sum = vec3(0.0), glossy = vec3(0.0);
+    float weights = 0.0, glossy_weights = 0.0;
     uint first, end;
     beginRanges(size.count);
     while (nextRange(x, 0.0, first, end))
@@ -74,8 +96,33 @@ vec3 interpolatedIrradiance(vec3 x, vec3 n)
             float weight = sampleWeight(s, x, n);
             sum += weight * s.irradiance;
             weights += weight;
+            if (kGlossy && weight > 0.0)
+            {
+                glossy += weight * incidentLight(s, order[i], r);
+                glossy_weights += weight * evenLight(r, unpackNormal(s.normal));
+            }
         }
-    return weights > 0.0 ? sum / weights : nearestIrradiance(x, n);
+    return Interpolated(weights > 0.0 ? sum / weights : nearestIrradiance(x, n), glossy / max(glossy_weights, 1e-20), weights > 0.0);
+}
+
+/// The table's entry between its neighbours.
+GlossyLobe lobeAt(float roughness, float cosine)
+{
+    vec2 at = vec2(clamp((roughness - kHarmonicsFrom) / (1.0 - kHarmonicsFrom), 0.0, 1.0) * float(kLobeRoughnesses - 1u),
+                   clamp(cosine, 0.0, 1.0) * float(kLobeCosines - 1u));
+    uvec2 cell = min(uvec2(at), uvec2(kLobeRoughnesses, kLobeCosines) - 2u);
+    at -= vec2(cell);
+    GlossyLobe sum = GlossyLobe(vec3(0.0), 0.0, 0.0, 0.0);
+    for (uint corner = 0u; corner < 4u; ++corner)
+    {
+        uvec2 step_ = uvec2(corner & 1u, corner >> 1);
+        vec2 near = mix(1.0 - at, at, equal(step_, uvec2(1u)));
+        float weight = near.x * near.y;
+        GlossyLobe lobe = lobes[(cell.x + step_.x) * kLobeCosines + cell.y + step_.y];
+        sum = GlossyLobe(sum.zonal + weight * lobe.zonal, sum.height + weight * lobe.height, sum.scale + weight * lobe.scale,
+                         sum.bias + weight * lobe.bias);
+    }
+    return sum;
 }
 
 void main()
@@ -86,9 +133,27 @@ void main()
     ShadingPoint point = points[pixel];
     Surface s = surfaceAt(point.slot, point.barycentrics, point.direction);
     Bsdf b = bsdfAt(materialAt(s), s.front);
-    vec3 reflectance = point.throughput * diffuseReflectance(b, max(0.0, -dot(s.normal, point.direction)));
+    float cosine = max(0.0, -dot(s.normal, point.direction));
+    vec3 reflectance = params.diffuse != 0u ? point.throughput * diffuseReflectance(b, cosine) : vec3(0.0);
     if (params.white != 0u)
         reflectance = mix(vec3(0.0), vec3(1.0), notEqual(reflectance, vec3(0.0)));
-    if (reflectance != vec3(0.0))
-        radiance[pixel] += reflectance * kInvPi * interpolatedIrradiance(s.position, s.smooth_normal);
+    Reflection reflection;
+    vec3 glossy_reflectance = vec3(0.0);
+    float share = kGlossy ? harmonicShare(b) : 0.0;
+    if (kGlossy)
+    {
+        GlossyLobe lobe = lobeAt(sqrt(b.alpha), cosine);
+        reflection = reflectionBy(lobe, s.normal, -point.direction);
+        glossy_reflectance = share * point.throughput * (lobe.scale * mix(b.f0, b.base_color, b.metallic) +
+                                                         lobe.bias * mix(b.f90, 1.0, b.metallic));
+        shares[pixel] = 0.0;
+    }
+    if (reflectance == vec3(0.0) && glossy_reflectance == vec3(0.0))
+        return;
+    Interpolated light = interpolatedLight(s.position, s.smooth_normal, reflection);
+    radiance[pixel] += reflectance * kInvPi * light.irradiance;
+    if (!kGlossy || !light.reached)
+        return;
+    shares[pixel] = share;
+    radiance[pixel] += glossy_reflectance * kInvPi * light.glossy;
 }

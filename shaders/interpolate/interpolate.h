@@ -11,8 +11,9 @@ struct InterpolateParams
     float alpha;  // of Eq. 2, per metre, where no sample is accepted
     float radius; // metres: how far a sample may be there
     uint white;   // 1: as if every surface reflected all of it
+    uint diffuse; // 1: diffuse light is wanted; else glossy light alone
 };
-GPU_SIZE(InterpolateParams, 16);
+GPU_SIZE(InterpolateParams, 20);
 
 struct InterpolateStatistics
 {
