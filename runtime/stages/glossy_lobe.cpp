@@ -7,74 +7,110 @@
 
 namespace
 {
+constexpr double kPi = std::numbers::pi;
 constexpr double kLeastCosine = 0.01; // of the viewer; the lobe has no limit at 0
+constexpr int kTilts = 64, kConcentrations = 96;
+constexpr double kLeastConcentration = -0.2, kMostConcentration = 0.95;
 
-struct Vector
+/// Sums over the lobe, which is normalized by `reflected`.
+struct Moments
 {
-    double x, y, z;
+    double reflected = 0, rise = 0; // Int f cos dw without Fresnel, and weighted by Schlick's (1 - w.h)^5
+    double x = 0, z = 0;            // mean direction; the viewer is at x < 0
 };
 
-struct Sample
+/// By normals visible from the viewer (Heitz 2018): each then counts by the masking of its reflection alone.
+Moments brdfMoments(double roughness, double cosine)
 {
-    Vector w;       // local, the viewer in the plane y = 0, x < 0
-    double brdf;    // GGX without Fresnel, 1/sr
-    double fresnel; // (1 - w.h)^5, h halfway between w and the viewer
-    double solid_angle;
-};
-
-/// Midpoints over the half y > 0 of the hemisphere, which stands for both.
-template <typename Visit>
-void forDirections(double roughness, double cosine, Visit&& visit)
-{
-    constexpr int kSteps = 32;
-    const double alpha2 = std::pow(roughness, 4), sine = std::sqrt(1 - cosine * cosine);
-    const auto masking = [&](double c) { return 2 * c / (c + std::sqrt(alpha2 + (1 - alpha2) * c * c)); };
+    constexpr int kSteps = 32; // strata each way
+    const double alpha = roughness * roughness, sine = std::sqrt(1 - cosine * cosine);
+    const double stretched = std::hypot(alpha * sine, cosine), vx = -alpha * sine / stretched, vz = cosine / stretched;
+    Moments m;
     for (int i = 0; i < kSteps; ++i)
         for (int k = 0; k < kSteps; ++k)
         {
-            const double theta = std::numbers::pi / 2 * (i + 0.5) / kSteps, phi = std::numbers::pi * (k + 0.5) / kSteps;
-            const Vector w{std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)};
-            const double length = std::sqrt(2 + 2 * (cosine * w.z - sine * w.x)), hz = (w.z + cosine) / length;
-            const double d = hz * hz * (alpha2 - 1) + 1;
-            const double brdf = alpha2 / (std::numbers::pi * d * d) * masking(cosine) * masking(w.z) / (4 * cosine * w.z);
-            const double away = std::max(0.0, 1 - length / 2); // |viewer + w| = 2 w.h
-            visit(Sample{.w = w,
-                         .brdf = brdf,
-                         .fresnel = away * away * away * away * away,
-                         .solid_angle = 2 * std::sin(theta) * (std::numbers::pi / 2 / kSteps) * (std::numbers::pi / kSteps)});
+            const double r = std::sqrt((i + 0.5) / kSteps), phi = 2 * kPi * (k + 0.5) / kSteps, a = r * std::cos(phi);
+            const double s = 0.5 * (1 + vz), b = (1 - s) * std::sqrt(1 - a * a) + s * r * std::sin(phi);
+            const double up = std::sqrt(std::max(0.0, 1 - a * a - b * b));
+            // Across the plane of view is y; in it (vz, -vx) completes the frame of (vx, vz).
+            const double nx = alpha * (b * vz + up * vx), ny = alpha * a, nz = std::max(1e-6, up * vz - b * vx);
+            const double length = std::sqrt(nx * nx + ny * ny + nz * nz);
+            const double hx = nx / length, hz = nz / length, facing = -sine * hx + cosine * hz;
+            const double wx = 2 * facing * hx + sine, wz = 2 * facing * hz - cosine;
+            if (wz <= 0)
+                continue;
+            const double masking = 2 * wz / (wz + std::sqrt(alpha * alpha + (1 - alpha * alpha) * wz * wz));
+            const double away = std::max(0.0, 1 - facing);
+            m.reflected += masking / (kSteps * kSteps);
+            m.rise += masking * away * away * away * away * away / (kSteps * kSteps);
+            m.x += masking * wx / (kSteps * kSteps);
+            m.z += masking * wz / (kSteps * kSteps);
         }
+    m.x /= m.reflected;
+    m.z /= m.reflected;
+    return m;
 }
 
+/// Int cos P_l(w.d) {1, w.x, w.z} dw over the hemisphere, bands 0 to 3.
+struct BandMoments
+{
+    std::array<double, 4> whole{}, x{}, z{};
+};
+
+BandMoments bandMoments(double tilt)
+{
+    constexpr int kSteps = 24; // the integrands are polynomials of low order
+    BandMoments m;
+    for (int i = 0; i < kSteps; ++i)
+        for (int k = 0; k < kSteps; ++k)
+        {
+            const double r2 = (i + 0.5) / kSteps, z = std::sqrt(1 - r2), x = std::sqrt(r2) * std::cos(2 * kPi * (k + 0.5) / kSteps);
+            const double t = x * std::sin(tilt) + z * std::cos(tilt);
+            const std::array<double, 4> p{1, t, 1.5 * t * t - 0.5, 2.5 * t * t * t - 1.5 * t};
+            for (size_t band = 0; band < 4; ++band)
+            {
+                m.whole[band] += p[band];
+                m.x[band] += p[band] * x;
+                m.z[band] += p[band] * z;
+            }
+        }
+    return m;
+}
 } // namespace
 
 gpu::GlossyLobe glossyLobe(double roughness, double cosine)
 {
-    cosine = std::clamp(cosine, kLeastCosine, 1.0);
-    Vector mean{};
-    double scale = 0, bias = 0;
-    forDirections(roughness, cosine,
-                  [&](const Sample& s)
-                  {
-                      const double weight = s.brdf * s.solid_angle;
-                      mean.x += weight * s.w.x;
-                      mean.z += weight * s.w.z;
-                      scale += weight * s.w.z * (1 - s.fresnel);
-                      bias += weight * s.w.z * s.fresnel;
-                  });
-    const double length = std::hypot(mean.x, mean.z);
-    const Vector d{mean.x / length, 0, mean.z / length};
-    std::array<double, 4> moments{}; // of the Legendre polynomials about d
-    forDirections(roughness, cosine,
-                  [&](const Sample& s)
-                  {
-                      const double weight = s.brdf * s.solid_angle, x = s.w.x * d.x + s.w.z * d.z;
-                      moments[0] += weight;
-                      moments[1] += weight * x;
-                      moments[2] += weight * (1.5 * x * x - 0.5);
-                      moments[3] += weight * (2.5 * x * x * x - 1.5 * x);
-                  });
-    const auto zonal = [&](size_t band) { return float(double(2 * band + 1) * moments[band] / moments[0]); };
-    return {.zonal = {zonal(1), zonal(2), zonal(3)}, .height = float(d.z), .scale = float(scale), .bias = float(bias)};
+    static const std::array<BandMoments, kTilts + 1> kBands = []
+    {
+        std::array<BandMoments, kTilts + 1> bands;
+        for (int i = 0; i <= kTilts; ++i)
+            bands[size_t(i)] = bandMoments(kPi / 2 * i / kTilts);
+        return bands;
+    }();
+    const Moments brdf = brdfMoments(roughness, std::clamp(cosine, kLeastCosine, 1.0));
+    gpu::GlossyLobe lobe{.height = 1, .concentration = 0, .scale = float(brdf.reflected - brdf.rise), .bias = float(brdf.rise)};
+    double least = 1e30;
+    for (int i = 0; i <= kTilts; ++i)
+        for (int k = 0; k <= kConcentrations; ++k)
+        {
+            const double a = kLeastConcentration + (kMostConcentration - kLeastConcentration) * k / kConcentrations;
+            const std::array<double, 4> zonal{1, 3 * a, 5 * a * a * a, 7 * a * a * a * a * a * a};
+            double whole = 0, x = 0, z = 0;
+            for (size_t band = 0; band < 4; ++band)
+            {
+                whole += zonal[band] * kBands[size_t(i)].whole[band];
+                x += zonal[band] * kBands[size_t(i)].x[band];
+                z += zonal[band] * kBands[size_t(i)].z[band];
+            }
+            const double dx = x / whole - brdf.x, dz = z / whole - brdf.z, difference = dx * dx + dz * dz;
+            if (whole > 0.1 * kBands[0].whole[0] && difference < least)
+            {
+                least = difference;
+                lobe.height = float(std::cos(kPi / 2 * i / kTilts));
+                lobe.concentration = float(a);
+            }
+        }
+    return lobe;
 }
 
 std::vector<gpu::GlossyLobe> glossyLobes()

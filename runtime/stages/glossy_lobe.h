@@ -5,9 +5,10 @@
 #include <vector>
 
 /// The GGX lobe (glTF 2.0, appendix B) of a roughness, seen at `cosine` from the normal; by numeric integration.
-/// Its direction is the mean of the BRDF without its Fresnel factor and without the cosine, which the light brings along; its
-/// zonal coefficients are that function's, averaged around the direction: of all zonal functions of so few bands the closest.
-/// @param roughness >= 0.1 (sharper ones would need a finer grid), @param cosine 0 to 1
+/// Direction and concentration are those with which light times cosine times the zonal function has the mean direction that it
+/// has with the BRDF (without its Fresnel factor): even light, and light that rises evenly along any axis, is then reflected
+/// right. Of two bodies of light that differ in higher bands it says less, the sharper the lobe.
+/// @param roughness >= 0.1, @param cosine 0 to 1
 gpu::GlossyLobe glossyLobe(double roughness, double cosine);
 
 /// gpu::GlossyLobe[kLobeRoughnesses][kLobeCosines], cosines fastest.

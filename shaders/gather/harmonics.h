@@ -21,15 +21,16 @@ struct SampleHarmonics
 GPU_SIZE(SampleHarmonics, 48);
 
 // The rough reflection lobe seen from one direction, for light given as above: f(w) ~ 1 + sum_l zonal_l P_l(w.d), f times a
-// constant that does not matter, d in the plane of the view and the normal, on the mirrored side.
+// constant that does not matter, d in the plane of the view and the normal, on the mirrored side. zonal_l = (2 l + 1) a^(l (l +
+// 1) / 2): the heat kernel on the sphere, which is the smoother the smaller a, and never rings much.
 struct GlossyLobe
 {
-    vec3 zonal;   // of bands 1 to 3
-    float height; // cosine between d and the normal
-    float scale;  // directional reflectance = scale f0 + bias f90
+    float height;        // cosine between d and the normal
+    float concentration; // a; below 0: more light is from away of d
+    float scale;         // directional reflectance = scale f0 + bias f90
     float bias;
 };
-GPU_SIZE(GlossyLobe, 24);
+GPU_SIZE(GlossyLobe, 16);
 
 GPU_CONST uint kLobeRoughnesses = 16u; // of the table, kHarmonicsFrom to 1
 GPU_CONST uint kLobeCosines = 32u;     // of the viewer, 0 to 1

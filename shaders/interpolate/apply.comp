@@ -112,15 +112,15 @@ GlossyLobe lobeAt(float roughness, float cosine)
                    clamp(cosine, 0.0, 1.0) * float(kLobeCosines - 1u));
     uvec2 cell = min(uvec2(at), uvec2(kLobeRoughnesses, kLobeCosines) - 2u);
     at -= vec2(cell);
-    GlossyLobe sum = GlossyLobe(vec3(0.0), 0.0, 0.0, 0.0);
+    GlossyLobe sum = GlossyLobe(0.0, 0.0, 0.0, 0.0);
     for (uint corner = 0u; corner < 4u; ++corner)
     {
         uvec2 step_ = uvec2(corner & 1u, corner >> 1);
         vec2 near = mix(1.0 - at, at, equal(step_, uvec2(1u)));
         float weight = near.x * near.y;
         GlossyLobe lobe = lobes[(cell.x + step_.x) * kLobeCosines + cell.y + step_.y];
-        sum = GlossyLobe(sum.zonal + weight * lobe.zonal, sum.height + weight * lobe.height, sum.scale + weight * lobe.scale,
-                         sum.bias + weight * lobe.bias);
+        sum = GlossyLobe(sum.height + weight * lobe.height, sum.concentration + weight * lobe.concentration,
+                         sum.scale + weight * lobe.scale, sum.bias + weight * lobe.bias);
     }
     return sum;
 }

@@ -39,13 +39,15 @@ Reflection reflectionBy(GlossyLobe lobe, vec3 normal, vec3 towards)
     across *= across2 > 1e-12 ? inversesqrt(across2) : 0.0;
     Reflection r;
     r.direction = normalize(normal * lobe.height + across * sqrt(max(0.0, 1.0 - square(lobe.height))));
+    float a = lobe.concentration, a3 = a * a * a;
+    vec3 zonal = vec3(3.0 * a, 5.0 * a3, 7.0 * a3 * a3);
     // Int cos P_l dw / pi over the hemisphere is 1, 2/3, 1/4, 0.
-    r.even = lobe.zonal.xy * vec2(2.0 / 3.0, 1.0 / 4.0);
+    r.even = zonal.xy * vec2(2.0 / 3.0, 1.0 / 4.0);
     vec4 basis[4] = harmonicBasis(r.direction);
-    r.weights[0] = basis[0] * lobe.zonal.xxxy;
-    r.weights[1] = basis[1] * lobe.zonal.y;
-    r.weights[2] = basis[2] * lobe.zonal.z;
-    r.weights[3] = basis[3] * lobe.zonal.z;
+    r.weights[0] = basis[0] * zonal.xxxy;
+    r.weights[1] = basis[1] * zonal.y;
+    r.weights[2] = basis[2] * zonal.z;
+    r.weights[3] = basis[3] * zonal.z;
     return r;
 }
 
