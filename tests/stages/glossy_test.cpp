@@ -48,14 +48,14 @@ double tableCosine(uint32_t c)
 TEST(GlossyLobe, ReflectsAsMuchAsTheBrdf)
 {
     double worst = 0;
-    for (const double roughness : {0.35, 0.45, 0.6, 0.8, 1.0})
+    for (const double roughness : {0.4, 0.5, 0.6, 0.8, 1.0})
         for (const double cosine : {0.05, 0.2, 0.5, 0.8, 1.0})
         {
             const double want = specularAlbedo(roughness, cosine);
             worst = std::max(worst, std::abs(reflectanceOf(glossyLobe(roughness, cosine)) / want - 1));
         }
     fmt::print("  largest error of the quadrature {:.2e}\n", worst);
-    EXPECT_LE(worst, 0.005);
+    EXPECT_LE(worst, 0.01); // 32 strata each way, some cut by the horizon
 }
 
 /// Coefficients of bands 0 to 3 of the zonal function.
@@ -78,7 +78,7 @@ double evenAnswer(const gpu::GlossyLobe& lobe)
 TEST(GlossyLobe, TakesLightFromWhereTheBrdfDoes)
 {
     constexpr int kSteps = 256;
-    for (const double roughness : {0.35, 0.45, 0.6, 0.8, 1.0})
+    for (const double roughness : {0.4, 0.5, 0.6, 0.8, 1.0})
         for (const double cosine : {0.3, 0.6, 0.9, 1.0})
         {
             const GltfMaterial material{.base_color = {1, 1, 1}, .metallic = 1, .roughness = roughness};
@@ -397,7 +397,7 @@ gpu::SampleHarmonics packed(const std::function<double(size_t)>& coefficient)
 TEST_F(GlossyView, OfEvenLightByHarmonicsIsTheDirectionalReflectance)
 {
     const gpu::SampleHarmonics even = packed([](size_t k) { return evenCoefficient({0, 1, 0}, k); });
-    for (const double roughness : {0.47, 0.63, 0.9, 1.0})
+    for (const double roughness : {0.67, 0.75, 0.9, 1.0})
     {
         SceneBuilder builder;
         const auto scene = load(room(builder, plastic(roughness)));
@@ -433,7 +433,7 @@ TEST_F(GlossyView, OfAnyLightIsTheLobesSumOverHarmonics)
     for (size_t k = 0; k < h.size(); ++k)
         h[k] = std::round(127 * 0.4 * std::sin(1.0 + 2.3 * double(k))) / 127;
     const gpu::SampleHarmonics light = packed([&](size_t k) { return h[k]; });
-    for (const double roughness : {0.5, 0.8})
+    for (const double roughness : {0.7, 0.8})
     {
         SceneBuilder builder;
         const auto scene = load(room(builder, plastic(roughness)));
@@ -566,14 +566,20 @@ TEST_F(GlossyRamp, HasNoSeamWhereHarmonicsTakeOver)
     for (size_t i = 0; i < kStrips; ++i)
         fmt::print("  roughness {:.2f}: harmonics {:.5f} +- {:.5f}, rays {:.5f} +- {:.5f}, reference {:.5f}\n",
                    0.05 * double(i), harmonics[i].first, harmonics[i].second, rays[i].first, rays[i].second, truth[i]);
-    // Across the band: 0.35 is all rays, 0.45 all harmonics.
-    const size_t before = 7, after = 9;
-    const double step = std::log(harmonics[after].first / harmonics[before].first),
-                 true_step = std::log(truth[after] / truth[before]);
-    const double noise = std::hypot(harmonics[after].second / harmonics[after].first,
-                                    harmonics[before].second / harmonics[before].first);
-    fmt::print("  step {:+.4f}, of the reference {:+.4f}, standard error {:.4f}\n", step, true_step, noise);
-    EXPECT_LE(std::abs(step - true_step), 4 * noise);
+    // Step by step and over the whole band: 0.4 is all rays, 0.65 all harmonics.
+    const auto expectStep = [&](size_t before, size_t after)
+    {
+        const double step = std::log(harmonics[after].first / harmonics[before].first),
+                     true_step = std::log(truth[after] / truth[before]);
+        const double noise = std::hypot(harmonics[after].second / harmonics[after].first,
+                                        harmonics[before].second / harmonics[before].first);
+        fmt::print("  {:.2f} to {:.2f}: step {:+.4f}, of the reference {:+.4f}, standard error {:.4f}\n",
+                   0.05 * double(before), 0.05 * double(after), step, true_step, noise);
+        EXPECT_LE(std::abs(step - true_step), 4 * noise);
+    };
+    for (size_t i = 8; i < 13; ++i)
+        expectStep(i, i + 1);
+    expectStep(8, 13);
 }
 
 TEST_F(GlossyRamp, GivesWayToRaysInAStandingPicture)
