@@ -58,6 +58,7 @@ Status GlobalIllumination::checkCounts(uint64_t range, const Settings& settings)
 GlobalIllumination::GlobalIllumination(const Device& device, const SceneGpu& scene, const Settings& settings, uint32_t width,
                                        uint32_t height)
     : width_(width), height_(height), diagonal_(0), longest_side_(0), has_specular_(scene.hasFeature(gpu::kFeatureSpecular)),
+      reflects_roughly_(scene.reflectsRoughly()),
       has_caustic_targets_(scene.info().caustic_target_count > 0),
       has_mirrors_(has_caustic_targets_ || scene.hasFeature(gpu::kFeatureTransmission | gpu::kFeatureThin)), primary_(device, scene, width * height), direct_(device, scene, width * height),
       photons_(device, scene, PhotonKind::kGlobal, settings.photon_count, settings.photon_bounces),
@@ -99,10 +100,13 @@ const Buffer& GlobalIllumination::record(Recorder& rec, const RayStage& rays, co
     {
         const PhotonTreeStage::Output map = recordPhotons(frame);
         const CutStage::Output cut = recordCut(frame, map);
+        std::optional<InterpolateStage::Sorted> samples;
+        if (frame.shows(gpu::kTermIndirect) || reflectsByHarmonics(frame))
+            samples.emplace(recordGather(frame, map, cut));
         if (frame.shows(gpu::kTermIndirect))
-            recordIndirect(frame, map, cut);
+            recordIndirect(frame, *samples);
         if (glossy)
-            recordGlossy(frame, cut);
+            recordGlossy(frame, cut, samples ? &*samples : nullptr);
     }
     if (has_specular_ && frame.shows(gpu::kTermCaustics))
         recordCaustics(frame);
@@ -202,12 +206,13 @@ GatherStage::Input GlobalIllumination::gatherInput(const Frame& frame) const
             .specular_depth = chainDepth(settings),
             .photon_count = settings.density_photons,
             .radius = (settings.cut_mode == gpu::kCutKnn ? settings.density_radius : kSearchRadius) * diagonal_,
-            .seed = frame.seed};
+            .seed = frame.seed,
+            .by_direction = reflectsByHarmonics(frame)};
 }
 
-void GlobalIllumination::recordIndirect(const Frame& frame, const PhotonTreeStage::Output& map, const CutStage::Output& cut)
+InterpolateStage::Sorted GlobalIllumination::recordGather(const Frame& frame, const PhotonTreeStage::Output& map,
+                                                          const CutStage::Output& cut)
 {
-    const Settings& settings = frame.settings;
     const SamplesStage::Output samples = [&]
     {
         const auto scope = frame.rec.scope("samples");
@@ -218,25 +223,42 @@ void GlobalIllumination::recordIndirect(const Frame& frame, const PhotonTreeStag
         gather_.record(frame.rec, frame.rays, samples, map, cut, gatherInput(frame), guide_ ? &*guide_ : nullptr);
     }
     const auto scope = frame.rec.scope("interpolate");
+    return interpolate_.sort(frame.rec, samples);
+}
+
+void GlobalIllumination::recordIndirect(const Frame& frame, const InterpolateStage::Sorted& samples) const
+{
+    const auto scope = frame.rec.scope("interpolate");
     interpolate_.record(frame.rec, samples,
                         {.diffuse_points = frame.diffuse_points,
                          .radiance = frame.radiance,
                          .point_count = frame.pixel_count,
-                         .alpha = settings.sample_alpha * 2 / longest_side_,
+                         .alpha = frame.settings.sample_alpha * 2 / longest_side_,
                          .radius = kSearchRadius * diagonal_,
-                         .white = settings.view == gpu::kViewIrradiance});
+                         .white = frame.settings.view == gpu::kViewIrradiance});
 }
 
-void GlobalIllumination::recordGlossy(const Frame& frame, const CutStage::Output& cut) const
+/// Rough reflection is from the samples' harmonics in the first frame of a picture, with little noise; harmonics of order 4
+/// cannot tell everything, so that the frames after it send rays.
+bool GlobalIllumination::reflectsByHarmonics(const Frame& frame) const
+{
+    return reflects_roughly_ && GlossyMode(frame.settings.glossy_mode) == GlossyMode::kHarmonics && frame.index == 0 &&
+           frame.shows(gpu::kTermGlossy);
+}
+
+void GlobalIllumination::recordGlossy(const Frame& frame, const CutStage::Output& cut, const InterpolateStage::Sorted* samples) const
 {
     const auto scope = frame.rec.scope("glossy");
-    glossy_.record(frame.rec, frame.rays, cut,
-                   {.points = frame.points,
-                    .radiance = frame.radiance,
-                    .point_count = frame.pixel_count,
-                    .first_sample = frame.index,
-                    .specular_depth = chainDepth(frame.settings),
-                    .seed = frame.camera.seed});
+    const GlossyStage::Input in{.points = frame.points,
+                                .radiance = frame.radiance,
+                                .point_count = frame.pixel_count,
+                                .first_sample = frame.index,
+                                .specular_depth = chainDepth(frame.settings),
+                                .seed = frame.camera.seed,
+                                .shared = reflectsByHarmonics(frame)};
+    if (in.shared)
+        glossy_.recordHarmonics(frame.rec, *samples, gather_.harmonics(), in);
+    glossy_.record(frame.rec, frame.rays, cut, in);
 }
 
 void GlobalIllumination::recordCaustics(const Frame& frame) const

@@ -40,14 +40,16 @@ private:
     SamplesStage::Output recordSamples(const Frame& frame) const;
     GatherStage::Input gatherInput(const Frame& frame) const;
     CutStage::Output recordCut(const Frame& frame, const PhotonTreeStage::Output& map) const;
-    void recordIndirect(const Frame& frame, const PhotonTreeStage::Output& map, const CutStage::Output& cut);
-    void recordGlossy(const Frame& frame, const CutStage::Output& cut) const;
+    bool reflectsByHarmonics(const Frame& frame) const;
+    InterpolateStage::Sorted recordGather(const Frame& frame, const PhotonTreeStage::Output& map, const CutStage::Output& cut);
+    void recordIndirect(const Frame& frame, const InterpolateStage::Sorted& samples) const;
+    void recordGlossy(const Frame& frame, const CutStage::Output& cut, const InterpolateStage::Sorted* samples) const;
     void recordCaustics(const Frame& frame) const;
     void recordView(const Frame& frame) const;
 
     uint32_t width_, height_;
     float diagonal_, longest_side_; // of the scene, metres
-    bool has_specular_, has_caustic_targets_, has_mirrors_;
+    bool has_specular_, reflects_roughly_, has_caustic_targets_, has_mirrors_;
     PrimaryStage primary_;
     DirectStage direct_;
     std::optional<GuideStage> guide_; // where it helps

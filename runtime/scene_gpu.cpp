@@ -1,5 +1,7 @@
 #include "runtime/scene_gpu.h"
 
+#include "shaders/gather/harmonics.h"
+
 #include <algorithm>
 
 namespace
@@ -61,6 +63,10 @@ uint32_t sceneFeatures(const package::Package& package)
                                                          : gpu::kFeaturePunctualLights;
     return features;
 }
+bool isRough(const gpu::Material& material)
+{
+    return material.roughness > gpu::kHarmonicsFrom && (material.specular > 0 || material.metallic > 0);
+}
 } // namespace
 
 Result<std::unique_ptr<SceneGpu>> SceneGpu::create(const Device& device, const package::Package& package)
@@ -102,6 +108,7 @@ Result<std::unique_ptr<SceneGpu>> SceneGpu::create(const Device& device, const p
     scene->info_ = sceneInfo(package);
     scene->info_buffer_ = device.upload("scene.info", std::span<const gpu::SceneInfo>(&scene->info_, 1));
     scene->constants_ = {sceneFeatures(package), package.meta().texture_pages()->size()};
+    scene->reflects_roughly_ = std::ranges::any_of(package.materials(), isRough);
     scene->createImages(package);
     scene->createDescriptorSet();
     return scene;

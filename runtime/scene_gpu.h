@@ -29,6 +29,8 @@ public:
     std::span<const uint32_t> constants() const { return constants_; }
     /// Whether it has any of these kFeature*.
     bool hasFeature(uint32_t features) const { return (constants_[0] & features) != 0; }
+    /// Some opaque material reflects so roughly that spherical harmonics can stand for rays (shaders/gather/harmonics.h).
+    bool reflectsRoughly() const { return reflects_roughly_; }
     /// Replaces light `index` from the next kernel of `rec` on; with the kind and pmf it has, on which other tables rest.
     void setLight(Recorder& rec, uint32_t index, const gpu::Light& light) const;
     /// By light index.
@@ -45,6 +47,7 @@ private:
     gpu::SceneInfo info_{};
     std::vector<LightShare> light_shares_;
     std::array<uint32_t, 2> constants_{};
+    bool reflects_roughly_ = false;
     Buffer info_buffer_;
     std::vector<Buffer> buffers_; // by binding, kBvhNodesBinding first
     std::vector<Image> pages_;    // kTexturePageCount of them, unused ones 1 x 1 white

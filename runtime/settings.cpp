@@ -31,6 +31,7 @@ constexpr std::array kKnobs{
     Knob{"samples.alpha", &Settings::sample_alpha, 0.01, 1000, "per half of the scene's longest side", "weight of distance against normals"},
     Knob{"samples.reach", &Settings::sample_reach, 2, 10, "of its cluster's mean radius", "how far a sample speaks for"},
     Knob{"gather.rays", &Settings::gather_rays, 1, 4096, "", "rays an irradiance sample gathers with"},
+    Knob{"glossy.mode", &Settings::glossy_mode, 0, 1, "", "rough reflections of a picture's first frame", "rays,sh"},
     Knob{"caustics.photons", &Settings::caustic_photons, 256, 4e6, "", "photon paths aimed at specular objects a frame"},
     Knob{"caustics.nearest", &Settings::caustic_density_photons, 8, 1024, "", "photons of a caustic's density estimate"},
     Knob{"caustics.radius", &Settings::caustic_radius, 1e-4, 1, "of the scene's diagonal", "how far that estimate may reach"},

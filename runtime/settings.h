@@ -8,6 +8,12 @@
 #include <string_view>
 #include <variant>
 
+enum class GlossyMode : uint32_t
+{
+    kRays,      // of every lobe
+    kHarmonics, // of rough lobes by spherical harmonics in the first frame of a picture, by rays in those after it
+};
+
 struct Settings
 {
     uint32_t specular_depth = 8;
@@ -26,6 +32,7 @@ struct Settings
     float sample_alpha = 10;
     float sample_reach = 5;
     uint32_t gather_rays = 256;
+    uint32_t glossy_mode = 1; // GlossyMode
     uint32_t caustic_photons = 100000; // paths
     uint32_t caustic_density_photons = 200;
     float caustic_radius = 0.05f; // of the scene's diagonal

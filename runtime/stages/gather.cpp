@@ -3,11 +3,12 @@
 GatherStage::GatherStage(const Device& device, const SceneGpu& scene, uint32_t max_samples, uint32_t max_rays_per_sample)
     : max_samples_(max_samples), has_specular_(scene.hasFeature(gpu::kFeatureSpecular)), generate_(device.kernel("gather/generate")),
       link_(device.kernel("gather/link", scene.constants())), link_knn_(device.kernel("gather/link_knn", scene.constants())),
-      sum_(device.kernel("gather/sum")), queue_(device, "gather.queue", max_samples * max_rays_per_sample),
+      sum_(device.kernel("gather/sum")), project_(device.kernel("gather/project", scene.constants())), queue_(device, "gather.queue", max_samples * max_rays_per_sample),
       next_queue_(device, "gather.next_queue", max_samples * max_rays_per_sample),
       hits_(device.texelArray<gpu::Hit>("gather.hits", uint64_t(max_samples) * max_rays_per_sample)),
       states_(device.array<gpu::GatherState>("gather.states", uint64_t(max_samples) * max_rays_per_sample)),
-      gathered_(device.array<gpu::Gathered>("gather.gathered", uint64_t(max_samples) * max_rays_per_sample))
+      gathered_(device.array<gpu::Gathered>("gather.gathered", uint64_t(max_samples) * max_rays_per_sample)),
+      harmonics_(device.array<gpu::SampleHarmonics>("gather.harmonics", scene.reflectsRoughly() ? max_samples : 1))
 {
 }
 
@@ -62,4 +63,7 @@ void GatherStage::record(Recorder& rec, const RayStage& rays, const SamplesStage
     }
     rec.run(sum_, max_samples_ * gpu::kRaysGroupSize, params,
             {{"Size", samples.size}, {"GatheredBlock", gathered_}, {"Samples", samples.samples}});
+    if (in.by_direction)
+        rec.run(project_, max_samples_ * gpu::kRaysGroupSize, params,
+                {{"Size", samples.size}, {"GatheredBlock", gathered_}, {"Samples", samples.samples}, {"Harmonics", harmonics_}});
 }

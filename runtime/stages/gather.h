@@ -4,6 +4,7 @@
 #include "runtime/stages/guide.h"
 #include "runtime/stages/samples.h"
 #include "shaders/gather/gather.h"
+#include "shaders/gather/harmonics.h"
 
 class GatherStage
 {
@@ -18,6 +19,7 @@ public:
         uint32_t photon_count;   // k, in CutMode::kKnn
         float radius;            // metres: of density estimation, and how far a cut node may be
         uint32_t seed;
+        bool by_direction = false; // whether harmonics() is wanted; only in scenes with rough reflection
     };
     /// Only tells `guide` where the samples' rays end.
     void look(Recorder& rec, const RayStage& rays, const SamplesStage::Output& samples, const Input& in, GuideStage& guide) const;
@@ -25,13 +27,16 @@ public:
     void record(Recorder& rec, const RayStage& rays, const SamplesStage::Output& samples, const PhotonTreeStage::Output& map,
                 const CutStage::Output& cut, const Input& in, GuideStage* guide = nullptr) const;
 
+    /// The light of the samples by direction, as the last record() that was asked for it left it.
+    const Buffer& harmonics() const { return harmonics_; } // gpu::SampleHarmonics[samples]
+
 private:
     void look(Recorder& rec, const RayStage& rays, const SamplesStage::Output& samples, const gpu::GatherParams& params,
               GuideStage* guide) const;
 
     uint32_t max_samples_;
     bool has_specular_;
-    Kernel generate_, link_, link_knn_, sum_;
+    Kernel generate_, link_, link_knn_, sum_, project_;
     RayQueue queue_, next_queue_;
-    Buffer hits_, states_, gathered_;
+    Buffer hits_, states_, gathered_, harmonics_;
 };

@@ -1,9 +1,14 @@
 #include "runtime/stages/glossy.h"
 
+#include "runtime/stages/glossy_lobe.h"
+
 GlossyStage::GlossyStage(const Device& device, const SceneGpu& scene, uint32_t max_pixels)
     : generate_(device.kernel("glossy/generate", scene.constants())), link_(device.kernel("glossy/link", scene.constants())),
+      harmonics_(device.kernel("glossy/harmonics", scene.constants())),
       queue_(device, "glossy.queue", max_pixels), next_queue_(device, "glossy.next_queue", max_pixels),
-      hits_(device.texelArray<gpu::Hit>("glossy.hits", max_pixels)), states_(device.array<gpu::GatherState>("glossy.states", max_pixels))
+      hits_(device.texelArray<gpu::Hit>("glossy.hits", max_pixels)), states_(device.array<gpu::GatherState>("glossy.states", max_pixels)),
+      lobes_(device.upload<gpu::GlossyLobe>("glossy.lobes", scene.reflectsRoughly() ? glossyLobes() : std::vector<gpu::GlossyLobe>(1))),
+      shares_(device.array<float>("glossy.shares", scene.reflectsRoughly() ? max_pixels : 1))
 {
 }
 
@@ -13,10 +18,11 @@ void GlossyStage::record(Recorder& rec, const RayStage& rays, const CutStage::Ou
                              .first_sample = in.first_sample,
                              .seed = in.seed,
                              .depth = 0,
-                             .depth_limit = in.specular_depth};
+                             .depth_limit = in.specular_depth,
+                             .shared_ = in.shared};
     rays.reset(rec, queue_.size);
     rec.run(generate_, in.point_count, params,
-            {{"Points", in.points}, {"Queue", queue_.size}, {"Rays", queue_.rays}, {"States", states_}});
+            {{"Points", in.points}, {"Queue", queue_.size}, {"Rays", queue_.rays}, {"States", states_}, {"Shares", shares_}});
     rays.close(rec, queue_.size);
     const RayQueue* queue = &queue_;
     const RayQueue* next = &next_queue_;
@@ -31,4 +37,11 @@ void GlossyStage::record(Recorder& rec, const RayStage& rays, const CutStage::Ou
         rays.close(rec, next->size);
         std::swap(queue, next);
     }
+}
+
+void GlossyStage::recordHarmonics(Recorder& rec, const InterpolateStage::Sorted& samples, const Buffer& harmonics, const Input& in) const
+{
+    rec.run(harmonics_, in.point_count, gpu::GlossyParams{.point_count = in.point_count},
+            {{"Size", samples.size}, {"TreeNodes", samples.tree.nodes()}, {"Samples", samples.samples}, {"Points", in.points},
+             {"Radiance", in.radiance}, {"Order", samples.tree.order()}, {"Harmonics", harmonics}, {"Lobes", lobes_}, {"Shares", shares_}});
 }

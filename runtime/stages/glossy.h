@@ -1,6 +1,8 @@
-// Indirect light in rough mirrors: rays by the specular lobe that read the illumination cut where they end.
+// Indirect light in rough mirrors: rays by the specular lobe that read the illumination cut where they end. What comes
+// from the samples' spherical harmonics needs no ray.
 #pragma once
 #include "runtime/stages/cut.h"
+#include "runtime/stages/interpolate.h"
 #include "runtime/stages/rays.h"
 #include "shaders/glossy/glossy.h"
 
@@ -17,11 +19,17 @@ public:
         uint32_t first_sample;
         uint32_t specular_depth; // most delta events of a ray
         uint32_t seed;
+        bool shared = false; // whether shares() says what part of the light is there already
     };
     void record(Recorder& rec, const RayStage& rays, const CutStage::Output& cut, const Input& in) const;
 
+    /// Adds what rough lobes reflect by the samples' harmonics; record() with in.shared then adds the rest.
+    /// @param harmonics gpu::SampleHarmonics, by sample as gathered
+    void recordHarmonics(Recorder& rec, const InterpolateStage::Sorted& samples, const Buffer& harmonics, const Input& in) const;
+    const Buffer& shares() const { return shares_; } // float[max_pixels]: which part of the light is from harmonics
+
 private:
-    Kernel generate_, link_;
+    Kernel generate_, link_, harmonics_;
     RayQueue queue_, next_queue_;
-    Buffer hits_, states_;
+    Buffer hits_, states_, lobes_, shares_;
 };

@@ -14,14 +14,19 @@ InterpolateStage::InterpolateStage(const Device& device, uint32_t max_samples)
 {
 }
 
-void InterpolateStage::record(Recorder& rec, const SamplesStage::Output& samples, const Input& in) const
+InterpolateStage::Sorted InterpolateStage::sort(Recorder& rec, const SamplesStage::Output& samples) const
 {
     tree_.record(rec, samples.spheres, samples.size);
     rec.runIndirect(reorder_, samples.size, 0, NoParams{},
                     {{"Size", samples.size}, {"Order", tree_.order()}, {"Samples", samples.samples}, {"Sorted", sorted_}});
+    return {.size = samples.size, .tree = tree_, .samples = sorted_};
+}
+
+void InterpolateStage::record(Recorder& rec, const Sorted& sorted, const Input& in) const
+{
     rec.clear(statistics_);
     const gpu::InterpolateParams params{.point_count = in.point_count, .alpha = in.alpha, .radius = in.radius, .white = in.white};
     rec.run(apply_, (in.point_count + run_ - 1) / run_, params,
-            {{"Size", samples.size}, {"TreeNodes", tree_.nodes()}, {"Samples", sorted_}, {"DiffusePoints", in.diffuse_points}, {"Radiance", in.radiance},
+            {{"Size", sorted.size}, {"TreeNodes", sorted.tree.nodes()}, {"Samples", sorted.samples}, {"DiffusePoints", in.diffuse_points}, {"Radiance", in.radiance},
              {"Statistics", statistics_}});
 }

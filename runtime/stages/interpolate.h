@@ -17,7 +17,15 @@ public:
         float radius; // metres: how far a sample may be there
         bool white = false; // as if every surface reflected all of it and nothing else had been: a debug view
     };
-    void record(Recorder& rec, const SamplesStage::Output& samples, const Input& in) const;
+    struct Sorted // samples as pixels look them up
+    {
+        const Buffer& size;    // gpu::QueueSize
+        const Tree& tree;      // over their supports; its order() leads back to where they were gathered
+        const Buffer& samples; // gpu::SampleTexels[size.count], sorted as the tree
+    };
+    /// Sorts samples that have been gathered.
+    Sorted sort(Recorder& rec, const SamplesStage::Output& samples) const;
+    void record(Recorder& rec, const Sorted& sorted, const Input& in) const;
 
     const Buffer& statistics() const { return statistics_; } // gpu::InterpolateStatistics of the last frame
 

@@ -2,8 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "shaders/gather/gather.h"
-#include "shaders/lib/math.glsl"
-#include "shaders/lib/random.glsl"
+#include "shaders/lib/gather_ray.glsl"
 
 // Cosine-distributed, stratified rays from every sample. One thread per ray.
 
@@ -24,10 +23,7 @@ void main()
     if (i >= count)
         return;
     uint sample_ = i / params.ray_count;
-    Sampler sampler_ = Sampler(hash(params.seed, sample_), i - sample_ * params.ray_count, 0u);
-    vec2 u = nextPair(sampler_);
     vec3 normal = unpackNormal(samples[sample_].normal);
-    float r = sqrt(u.x), phi = 2.0 * kPi * u.y;
-    vec3 direction = frameAround(normal) * vec3(r * cos(phi), r * sin(phi), sqrt(max(0.0, 1.0 - u.x)));
+    vec3 direction = gatherDirection(normal, sample_, i - sample_ * params.ray_count, params.seed);
     rays[i] = Ray(offsetOrigin(samples[sample_].position, normal), kInfinity, direction, i);
 }

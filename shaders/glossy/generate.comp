@@ -14,6 +14,7 @@ layout(set = 1, binding = 0, scalar) readonly buffer Points { ShadingPoint point
 layout(set = 1, binding = 1, scalar) buffer Queue { QueueSize queue; };
 layout(set = 1, binding = 2, scalar) writeonly buffer Rays { Ray rays[]; };
 layout(set = 1, binding = 3, scalar) writeonly buffer States { GatherState states[]; };
+layout(set = 1, binding = 4, scalar) readonly buffer Shares { float shares[]; }; // of the light that is there already
 
 const float kSureReflectance = 0.2; // from here on every pixel sends its ray
 
@@ -27,12 +28,15 @@ void main()
     Bsdf b = bsdfAt(materialAt(s), s.front);
     if (b.smooth_specular)
         return;
+    float missing = params.shared_ != 0u ? 1.0 - shares[path] : 1.0;
+    if (missing <= 0.0)
+        return;
     mat3 frame = frameAround(s.normal);
     vec3 wo = -point.direction * frame;
     LobeProbabilities p = lobeProbabilities(b, wo.z);
     float specular = p.reflection + p.transmission;
     vec3 reflected = glossyReflectance(b, wo.z) + belowColor(b, wo.z) * b.transmission;
-    float survival = clamp(luminance(reflected * point.throughput) / kSureReflectance, 0.05, 1.0);
+    float survival = clamp(missing * luminance(reflected * point.throughput) / kSureReflectance, 0.05, 1.0);
     Sampler sampler_ = vertexSampler(path, point.depth + 1u, params.point_count, params.first_sample, params.seed);
     sampler_.dimension += kVertexDimensions - 2u; // those before are direct light's
     vec2 u = nextPair(sampler_), choice = nextPair(sampler_);
@@ -45,6 +49,6 @@ void main()
         return;
     vec3 weight = (next.weight - next.diffuse_weight) * (next.pdf / chosen);
     bool entered = next.wi.z < 0.0 && !b.thin;
-    states[path] = GatherState(point.throughput * weight / survival, entered && s.front ? s.material : kNone, 0u);
+    states[path] = GatherState(point.throughput * weight * (missing / survival), entered && s.front ? s.material : kNone, 0u);
     rays[atomicAdd(queue.count, 1u)] = leavingRay(s, wi, kInfinity, path);
 }

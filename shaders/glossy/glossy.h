@@ -12,8 +12,9 @@ struct GlossyParams
     uint seed;
     uint depth;        // delta events before this one
     uint depth_limit;
+    uint shared_; // 1: Shares says which part of the light is there already
 };
-GPU_SIZE(GlossyParams, 20);
+GPU_SIZE(GlossyParams, 24);
 
 GPU_NAMESPACE_END
 #endif

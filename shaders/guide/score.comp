@@ -34,5 +34,5 @@ void main()
         return;
     uint cell = cells[path];
     float weight = cellShare(cell) / cellProbability(cell);
-    atomicAdd(scores[cell].now, max(1u, uint(float(count * kGuideScoreScale) * weight)));
+    atomicAdd(scores[cell].now, max(1u, uint(float(count * kGuideScoreScale) * weight + 0.5)));
 }

@@ -28,9 +28,15 @@ vec3 uniformCone(float height, vec2 u)
     return vec3(r * cos(phi), r * sin(phi), 1.0 - h);
 }
 
+/// Squares of u stay compact: what is learned of them holds for a place, not for a slice (Shirley & Chiu 1997).
 vec2 uniformDisc(vec2 u)
 {
-    float r = sqrt(u.x), phi = 2.0 * kPi * u.y;
+    vec2 at = 2.0 * u - 1.0;
+    bool wide = abs(at.x) > abs(at.y);
+    float r = wide ? at.x : at.y;
+    if (r == 0.0)
+        return vec2(0.0);
+    float phi = wide ? 0.25 * kPi * at.y / at.x : 0.5 * kPi - 0.25 * kPi * at.x / at.y;
     return r * vec2(cos(phi), sin(phi));
 }
 
@@ -125,7 +131,10 @@ Emission emitTriangle(Light light, float aim, bool aimed, uint target, vec2 u, v
         direction = frameAround(normalize(caustic_targets[target].center - position)) *
                     uniformCone(coneHeight(caustic_targets[target], position), u);
     else
-        direction = frameAround(normal) * vec3(uniformDisc(u), sqrt(max(0.0, 1.0 - u.x)));
+    {
+        vec2 disc = uniformDisc(u);
+        direction = frameAround(normal) * vec3(disc, sqrt(max(0.0, 1.0 - dot(disc, disc))));
+    }
     float cosine = dot(direction, normal);
     if (aimed && two_sided)
     {

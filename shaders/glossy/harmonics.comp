@@ -1,0 +1,95 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "shaders/glossy/glossy.h"
+#include "shaders/lib/harmonics.glsl"
+
+// What rough lobes reflect of the light around a shading point, from the spherical harmonics of the irradiance samples whose
+// support holds it, with the weights of interpolation. One thread per pixel.
+
+layout(local_size_x = kRaysGroupSize) in;
+layout(push_constant, scalar) uniform Params { GlossyParams params; };
+
+layout(set = 1, binding = 0, scalar) readonly buffer Size { QueueSize size; };
+layout(set = 1, binding = 1) uniform usamplerBuffer TreeNodes;
+layout(set = 1, binding = 2) uniform usamplerBuffer Samples;
+layout(set = 1, binding = 3, scalar) readonly buffer Points { ShadingPoint points[]; };
+layout(set = 1, binding = 4, scalar) buffer Radiance { vec3 radiance[]; };
+layout(set = 1, binding = 5, scalar) readonly buffer Order { uint order[]; }; // samples as they were gathered
+layout(set = 1, binding = 6, scalar) readonly buffer Harmonics { SampleHarmonics harmonics[]; };
+layout(set = 1, binding = 7, scalar) readonly buffer Lobes { GlossyLobe lobes[]; };
+layout(set = 1, binding = 8, scalar) writeonly buffer Shares { float shares[]; }; // of glossy light that needs no ray
+#include "shaders/lib/sample.glsl"
+#include "shaders/lib/tree.glsl"
+
+/// The table's entry between its neighbours.
+GlossyLobe lobeAt(float roughness, float cosine)
+{
+    vec2 at = vec2(clamp((roughness - kHarmonicsFrom) / (1.0 - kHarmonicsFrom), 0.0, 1.0) * float(kLobeRoughnesses - 1u),
+                   clamp(cosine, 0.0, 1.0) * float(kLobeCosines - 1u));
+    uvec2 cell = min(uvec2(at), uvec2(kLobeRoughnesses, kLobeCosines) - 2u);
+    at -= vec2(cell);
+    GlossyLobe sum = GlossyLobe(0.0, 0.0, 0.0, 0.0);
+    for (uint corner = 0u; corner < 4u; ++corner)
+    {
+        uvec2 step_ = uvec2(corner & 1u, corner >> 1);
+        vec2 near = mix(1.0 - at, at, equal(step_, uvec2(1u)));
+        float weight = near.x * near.y;
+        GlossyLobe lobe = lobes[(cell.x + step_.x) * kLobeCosines + cell.y + step_.y];
+        sum = GlossyLobe(sum.height + weight * lobe.height, sum.concentration + weight * lobe.concentration,
+                         sum.scale + weight * lobe.scale, sum.bias + weight * lobe.bias);
+    }
+    return sum;
+}
+
+/// Light that a sample sends into the lobe, times its evenLight.
+vec3 incidentLight(vec3 irradiance, uint slot, Reflection r)
+{
+    uint w[12] = harmonics[slot].words;
+    return irradiance * max(vec3(channelLight(r, w[0], w[1], w[2], w[3]), channelLight(r, w[4], w[5], w[6], w[7]),
+                                 channelLight(r, w[8], w[9], w[10], w[11])), vec3(0.0));
+}
+
+/// pi times the radiance that the lobe sees. @return false where no sample reaches
+bool interpolatedLight(vec3 x, vec3 n, Reflection r, out vec3 light)
+{
+    light = vec3(0.0);
+    float weights = 0.0;
+    uint first, end;
+    beginRanges(size.count);
+    while (nextRange(x, 0.0, first, end))
+        for (uint i = first; i < end; ++i)
+        {
+            SampleTexels s = loadSample(i);
+            float weight = sampleWeight(s, x, n);
+            if (weight > 0.0)
+            {
+                light += weight * incidentLight(s.irradiance, order[i], r);
+                weights += weight * evenLight(r, s.normal);
+            }
+        }
+    light /= max(weights, 1e-20);
+    return weights > 0.0;
+}
+
+void main()
+{
+    uint pixel = gl_GlobalInvocationID.x;
+    if (pixel >= params.point_count || points[pixel].slot == kNone)
+        return;
+    shares[pixel] = 0.0;
+    ShadingPoint point = points[pixel];
+    Surface s = surfaceAt(point.slot, point.barycentrics, point.direction);
+    Bsdf b = bsdfAt(materialAt(s), s.front);
+    float share = harmonicShare(b);
+    if (share == 0.0)
+        return;
+    float cosine = max(0.0, -dot(s.normal, point.direction));
+    GlossyLobe lobe = lobeAt(sqrt(b.alpha), cosine);
+    vec3 light;
+    if (!interpolatedLight(s.position, s.smooth_normal, reflectionBy(lobe, s.normal, -point.direction), light))
+        return;
+    vec3 reflectance = lobe.scale * mix(b.f0, b.base_color, b.metallic) + lobe.bias * mix(b.f90, 1.0, b.metallic);
+    shares[pixel] = share;
+    radiance[pixel] += share * kInvPi * point.throughput * reflectance * light;
+}
