@@ -32,6 +32,7 @@ struct GlobalIllumination::Frame
     uint32_t pixel_count;
     uint32_t index; // in a standing picture
     uint32_t seed;  // of this frame alone
+    bool moved;     // the camera, since the last frame
     bool shows(uint32_t term) const
     {
         if (settings.view != gpu::kViewNone)
@@ -56,7 +57,7 @@ Status GlobalIllumination::checkCounts(uint64_t range, const Settings& settings)
 
 GlobalIllumination::GlobalIllumination(const Device& device, const SceneGpu& scene, const Settings& settings, uint32_t width,
                                        uint32_t height)
-    : width_(width), height_(height), diagonal_(0), longest_side_(0), has_specular_(scene.hasFeature(gpu::kFeatureSpecular)),
+    : scene_(scene), width_(width), height_(height), diagonal_(0), longest_side_(0), has_specular_(scene.hasFeature(gpu::kFeatureSpecular)),
       has_caustic_targets_(scene.info().caustic_target_count > 0),
       has_mirrors_(has_caustic_targets_ || scene.hasFeature(gpu::kFeatureTransmission | gpu::kFeatureThin)), primary_(device, scene, width * height), direct_(device, scene, width * height),
       photons_(device, scene, PhotonKind::kGlobal, settings.photon_count, settings.photon_bounces),
@@ -74,7 +75,8 @@ GlobalIllumination::GlobalIllumination(const Device& device, const SceneGpu& sce
     longest_side_ = std::max({x, y, z, 1e-20f});
 }
 
-const Buffer& GlobalIllumination::record(Recorder& rec, const RayStage& rays, const gpu::CameraParams& camera, const Settings& settings)
+const Buffer& GlobalIllumination::record(Recorder& rec, const RayStage& rays, const gpu::CameraParams& camera, const Settings& settings,
+                                         bool moved)
 {
     const auto primary = primary_.record(rec, rays, {.camera = camera, .specular_depth = settings.specular_depth});
     const Frame frame{.rec = rec,
@@ -85,7 +87,8 @@ const Buffer& GlobalIllumination::record(Recorder& rec, const RayStage& rays, co
                       .radiance = primary.radiance,
                       .pixel_count = width_ * height_,
                       .index = camera.first_sample,
-                      .seed = traceSeed(camera.seed, camera.first_sample, gpu::kTermIndirect)};
+                      .seed = traceSeed(camera.seed, camera.first_sample, gpu::kTermIndirect),
+                      .moved = moved};
     if (!frame.shows(gpu::kTermEmission))
         rec.clear(frame.radiance);
     if (frame.shows(gpu::kTermDirect))
@@ -125,51 +128,80 @@ void GlobalIllumination::recordDirect(const Frame& frame) const
                     .seed = frame.camera.seed});
 }
 
-PhotonTreeStage::Output GlobalIllumination::recordPhotons(const Frame& frame) const
+/// Whether the map that `made` tells of is the one that `in` would give; else notes that it is about to be made. A standing
+/// picture asks for other photons in every frame.
+bool GlobalIllumination::isThere(const Frame& frame, std::optional<MapOrigin>& made, const PhotonStage::Input& in) const
+{
+    const MapOrigin asked{.lights = scene_.lightsVersion(), .in = in};
+    if (frame.settings.reuse_photons && made == asked)
+        return true;
+    made = asked;
+    return false;
+}
+
+PhotonTreeStage::Output GlobalIllumination::recordPhotons(const Frame& frame)
 {
     const Settings& settings = frame.settings;
-    const auto stored = [&]
-    {
-        const auto scope = frame.rec.scope("photons");
-        return photons_.record(frame.rec, frame.rays,
-                               {.path_count = settings.photon_count,
+    const PhotonStage::Input in{.path_count = settings.photon_count,
                                 .bounce_limit = settings.photon_bounces,
                                 .specular_depth = chainDepth(settings),
                                 .first_path = frame.index * settings.photon_count,
-                                .seed = frame.camera.seed});
+                                .seed = frame.camera.seed};
+    const bool is_there = isThere(frame, global_map_, in);
+    if (!is_there)
+        made_cut_.reset();
+    const auto stored = [&]() -> std::optional<PhotonStage::Output>
+    {
+        const auto scope = frame.rec.scope("photons");
+        return is_there ? std::nullopt : std::optional(photons_.record(frame.rec, frame.rays, in));
     }();
     const auto scope = frame.rec.scope("photon tree");
-    return photon_tree_.record(frame.rec, frame.rays, stored);
+    return stored ? photon_tree_.record(frame.rec, frame.rays, *stored) : photon_tree_.output();
 }
 
-CutStage::Output GlobalIllumination::recordCut(const Frame& frame, const PhotonTreeStage::Output& map) const
+CutStage::Output GlobalIllumination::recordCut(const Frame& frame, const PhotonTreeStage::Output& map)
 {
     const Settings& settings = frame.settings;
     const auto scope = frame.rec.scope("cut");
-    return cut_.record(frame.rec, frame.rays, map,
-                       {.mode = CutMode(settings.cut_mode),
-                        .iterations = settings.cut_iterations,
-                        .difference = settings.cut_difference,
-                        .photon_count = settings.density_photons,
-                        .radius = shrunkRadius(settings.density_radius * diagonal_, frame.index)});
+    const CutStage::Input in{.mode = CutMode(settings.cut_mode),
+                             .iterations = settings.cut_iterations,
+                             .difference = settings.cut_difference,
+                             .photon_count = settings.density_photons,
+                             .radius = shrunkRadius(settings.density_radius * diagonal_, frame.index)};
+    if (made_cut_ == in)
+        return cut_.output();
+    made_cut_ = in;
+    return cut_.record(frame.rec, frame.rays, map, in);
 }
 
-void GlobalIllumination::recordIndirect(const Frame& frame, const PhotonTreeStage::Output& map, const CutStage::Output& cut) const
+/// Samples are kept from the first frame of one picture to that of the next where nothing but the camera has changed. A
+/// standing picture takes new ones in every frame.
+uint32_t GlobalIllumination::sampleAge(const Frame& frame)
+{
+    const SamplesOrigin now{.lights = scene_.lightsVersion(), .seed = frame.camera.seed, .settings = frame.settings};
+    const bool keeps = frame.settings.reuse_samples && frame.moved && frame.index == 0 && last_samples_ == now;
+    last_samples_ = frame.index == 0 ? std::optional(now) : std::nullopt;
+    sample_age_ = keeps ? sample_age_ + 1 : 0;
+    return sample_age_;
+}
+
+void GlobalIllumination::recordIndirect(const Frame& frame, const PhotonTreeStage::Output& map, const CutStage::Output& cut)
 {
     const Settings& settings = frame.settings;
     const float alpha = settings.sample_alpha * 2 / longest_side_;
     const float radius = kSearchRadius * diagonal_;
+    const SamplesStage::Input placing{.shading_points = frame.points,
+                                      .mode = SamplesMode(settings.samples_mode),
+                                      .budget = settings.sample_count,
+                                      .iterations = settings.sample_iterations,
+                                      .alpha = alpha,
+                                      .reach = settings.sample_reach,
+                                      .seed = frame.seed,
+                                      .age = sampleAge(frame)};
     const auto samples = [&]
     {
         const auto scope = frame.rec.scope("samples");
-        return samples_.record(frame.rec, frame.rays,
-                               {.shading_points = frame.points,
-                                .mode = SamplesMode(settings.samples_mode),
-                                .budget = settings.sample_count,
-                                .iterations = settings.sample_iterations,
-                                .alpha = alpha,
-                                .reach = settings.sample_reach,
-                                .seed = frame.seed});
+        return samples_.record(frame.rec, frame.rays, placing);
     }();
     {
         const auto scope = frame.rec.scope("gather");
@@ -179,7 +211,7 @@ void GlobalIllumination::recordIndirect(const Frame& frame, const PhotonTreeStag
                         .specular_depth = chainDepth(settings),
                         .photon_count = settings.density_photons,
                         .radius = settings.cut_mode == gpu::kCutKnn ? settings.density_radius * diagonal_ : radius,
-                        .seed = frame.seed});
+                        .seed = placing.frameSeed()});
     }
     const auto scope = frame.rec.scope("interpolate");
     interpolate_.record(frame.rec, samples,
@@ -203,20 +235,20 @@ void GlobalIllumination::recordGlossy(const Frame& frame, const CutStage::Output
                     .seed = frame.camera.seed});
 }
 
-void GlobalIllumination::recordCaustics(const Frame& frame) const
+void GlobalIllumination::recordCaustics(const Frame& frame)
 {
     const Settings& settings = frame.settings;
     const auto scope = frame.rec.scope("caustics");
     // Without mirrors and glass to aim at there are only the faint reflections of smooth layers: few photons will do.
     const uint32_t path_count = has_caustic_targets_ ? settings.caustic_photons : settings.caustic_photons / 8;
-    const auto stored = caustic_photons_.record(frame.rec, frame.rays,
-                                                {.path_count = path_count,
-                                                 .bounce_limit = kCausticBounces,
-                                                 .specular_depth = chainDepth(settings),
-                                                 .first_path = frame.index * path_count,
-                                                 .seed = frame.camera.seed + gpu::kTermCaustics});
-    const auto map = caustic_tree_.record(frame.rec, frame.rays, stored);
-    caustics_.record(frame.rec, map,
+    const PhotonStage::Input in{.path_count = path_count,
+                                .bounce_limit = kCausticBounces,
+                                .specular_depth = chainDepth(settings),
+                                .first_path = frame.index * path_count,
+                                .seed = frame.camera.seed + gpu::kTermCaustics};
+    if (!isThere(frame, caustic_map_, in))
+        caustic_tree_.record(frame.rec, frame.rays, caustic_photons_.record(frame.rec, frame.rays, in));
+    caustics_.record(frame.rec, caustic_tree_.output(),
                      {.points = frame.points,
                       .radiance = frame.radiance,
                       .point_count = frame.pixel_count,

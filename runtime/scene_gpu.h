@@ -24,7 +24,9 @@ public:
     /// Whether it has any of these kFeature*.
     bool hasFeature(uint32_t features) const { return (constants_[0] & features) != 0; }
     /// Replaces light `index` from the next kernel of `rec` on; with the kind and pmf it has, on which other tables rest.
-    void setLight(Recorder& rec, uint32_t index, const gpu::Light& light) const;
+    void setLight(Recorder& rec, uint32_t index, const gpu::Light& light);
+    /// Grows whenever a light is replaced: what was made under another version is out of date.
+    uint64_t lightsVersion() const { return lights_version_; }
     /// Some light has an extent, so that a ray may find it: an emissive triangle or an environment.
     bool hasAreaLights() const { return hasFeature(gpu::kFeatureTriangleLights | gpu::kFeatureEnvironment); }
 
@@ -35,6 +37,7 @@ private:
 
     const Device& device_;
     gpu::SceneInfo info_{};
+    uint64_t lights_version_ = 0;
     std::array<uint32_t, 2> constants_{};
     Buffer info_buffer_;
     std::vector<Buffer> buffers_;           // by binding, kBvhNodesBinding first

@@ -18,6 +18,7 @@ public:
         float difference;     // Delta_E, relative
         uint32_t photon_count; // k of density estimation
         float radius;         // metres, of density estimation at most
+        bool operator==(const Input&) const = default; // equal input over one map gives one cut
     };
     struct Output
     {

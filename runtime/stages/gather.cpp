@@ -22,7 +22,8 @@ void GatherStage::record(Recorder& rec, const RayStage& rays, const SamplesStage
                              .photon_count = in.photon_count,
                              .radius = in.radius};
     rec.run(generate_, max_samples_ * in.ray_count, params,
-            {{"Size", samples.size}, {"Samples", samples.samples}, {"Queue", queue_.size}, {"Rays", queue_.rays}});
+            {{"Size", samples.size}, {"Samples", samples.samples}, {"Queue", queue_.size}, {"Rays", queue_.rays},
+             {"KeptSize", samples.kept}});
     const RayQueue* queue = &queue_;
     const RayQueue* next = &next_queue_;
     for (; params.depth <= params.depth_limit; ++params.depth)
@@ -46,5 +47,5 @@ void GatherStage::record(Recorder& rec, const RayStage& rays, const SamplesStage
         std::swap(queue, next);
     }
     rec.run(sum_, max_samples_ * gpu::kRaysGroupSize, params,
-            {{"Size", samples.size}, {"GatheredBlock", gathered_}, {"Samples", samples.samples}});
+            {{"Size", samples.size}, {"GatheredBlock", gathered_}, {"Samples", samples.samples}, {"KeptSize", samples.kept}});
 }

@@ -18,7 +18,7 @@ public:
         float radius;            // metres: of density estimation, and how far a cut node may be
         uint32_t seed;
     };
-    /// Sets irradiance and harmonic of samples.samples.
+    /// Sets irradiance and harmonic of samples.samples, except of those that are kept.
     void record(Recorder& rec, const RayStage& rays, const SamplesStage::Output& samples, const PhotonTreeStage::Output& map,
                 const CutStage::Output& cut, const Input& in) const;
 

@@ -23,6 +23,7 @@ public:
         uint32_t specular_depth; // delta events a path may have besides
         uint32_t first_path;     // index of path 0 in the sequence of all frames
         uint32_t seed;
+        bool operator==(const Input&) const = default; // equal input under equal lights gives equal photons
     };
     struct Output
     {

@@ -5,7 +5,7 @@
 #include "shaders/lib/math.glsl"
 #include "shaders/lib/random.glsl"
 
-// Cosine-distributed, stratified rays from every sample. One thread per ray.
+// Cosine-distributed, stratified rays from every new sample. One thread per ray.
 
 layout(local_size_x = kRaysGroupSize) in;
 layout(push_constant, scalar) uniform Params { GatherParams params; };
@@ -14,17 +14,18 @@ layout(set = 1, binding = 0, scalar) readonly buffer Size { QueueSize size; };
 layout(set = 1, binding = 1, scalar) readonly buffer Samples { Sample samples[]; };
 layout(set = 1, binding = 2, scalar) buffer Queue { QueueSize queue; };
 layout(set = 1, binding = 3, scalar) writeonly buffer Rays { Ray rays[]; };
+layout(set = 1, binding = 4, scalar) readonly buffer KeptSize { QueueSize kept_size; }; // the first samples, which have all they need
 
 void main()
 {
     uint i = gl_GlobalInvocationID.x;
-    uint count = size.count * params.ray_count;
+    uint count = (size.count - kept_size.count) * params.ray_count;
     if (i == 0u)
         queue = QueueSize(uvec3((count + kRaysGroupSize - 1u) / kRaysGroupSize, 1u, 1u), count);
     if (i >= count)
         return;
-    uint sample_ = i / params.ray_count;
-    Sampler sampler_ = Sampler(hash(params.seed, sample_), i % params.ray_count, 0u);
+    uint new_sample = i / params.ray_count, sample_ = kept_size.count + new_sample;
+    Sampler sampler_ = Sampler(hash(params.seed, new_sample), i % params.ray_count, 0u);
     vec2 u = nextPair(sampler_);
     vec3 normal = unpackNormal(samples[sample_].normal);
     float r = sqrt(u.x), phi = 2.0 * kPi * u.y;

@@ -76,7 +76,7 @@ protected:
         submit(*scene_,
                [&](Recorder& rec)
                {
-                   stage.record(rec, {.size = size, .samples = on_gpu, .spheres = supports},
+                   stage.record(rec, {.size = size, .samples = on_gpu, .spheres = supports, .kept = size},
                                 {.points = points_->gpu->points,
                                  .radiance = radiance,
                                  .point_count = kWidth * kHeight,

@@ -97,7 +97,7 @@ double since(std::chrono::steady_clock::time_point start)
 Measurement measure(const OpenedPackage& opened, const FrameBenchOptions& options)
 {
     const Mode mode = options.mode == "gi" ? Mode::kGi : options.mode == "direct" ? Mode::kDirect : Mode::kReference;
-    const SceneGpu& scene = *opened.scene;
+    SceneGpu& scene = *opened.scene;
     Renderer renderer(*opened.device, scene, mode, options.width, options.height, options.settings);
     Recorder rec(*opened.device);
     const auto light = options.still || options.still_light ? std::nullopt : chooseLight(opened.package.lights());
