@@ -57,6 +57,8 @@ public:
         return device.download<gpu::Sample>(samples_, device.download<gpu::QueueSize>(size_, 1)[0].count);
     }
 
+    const Buffer& tenures() const { return tenures_; } // gpu::SampleTenure[size.count] of the last record()
+
     /// Pixels between neighbouring points of the quadtree, each way.
     uint32_t stride() const { return stride_; }
 
