@@ -34,7 +34,7 @@ SamplesStage::SamplesStage(const Device& device, const SceneGpu& scene, uint32_t
       point_count_(1u << (2 * levels_)), points_kernel_(device.kernel("samples/points", scene.constants())),
       mean_(device.kernel("samples/mean")), variation_(device.kernel("samples/variation")), budget_(device.kernel("samples/budget")),
       seed_(device.kernel("samples/seed")), assign_(device.kernel("samples/assign")), update_(device.kernel("samples/update")),
-      snap_(device.kernel("samples/snap")), occupied_kernel_(device.kernel("samples/occupied")), place_(device.kernel("samples/place")),
+      snap_(device.kernel("samples/snap")), measure_(device.kernel("samples/measure")), occupied_kernel_(device.kernel("samples/occupied")), place_(device.kernel("samples/place")),
       count_(device.kernel("samples/count")), recall_(device.kernel("samples/recall")), classify_(device.kernel("samples/classify")),
       retain_(device.kernel("samples/retain")), mask_(device.kernel("samples/mask")), keep_(device.kernel("samples/keep")),
       adopt_(device.kernel("samples/adopt")),
@@ -155,6 +155,7 @@ SamplesStage::Output SamplesStage::record(Recorder& rec, const RayStage& rays, c
     recordSeeds(rec, rays, in, points);
     recordClusters(rec, in, params, points);
     rec.run(snap_, point_count_, params, {{"Owners", owners_}, {"Sums", sums_}});
+    rec.run(measure_, point_count_, params, {{"Owners", owners_}, {"Points", points_}, {"Sums", sums_}});
     rec.runIndirect(occupied_kernel_, cluster_size_, 0, NoParams{},
                     {{"Size", cluster_size_}, {"Sums", sums_}, {"Flags", occupied_flags_}});
     sample_compaction_.record(rec, occupied_flags_, occupied_, new_size_, cluster_size_);

@@ -71,7 +71,7 @@ private:
     uint32_t width_, height_;
     float diagonal_; // of the scene, metres
     uint32_t stride_, levels_, point_count_;
-    Kernel points_kernel_, mean_, variation_, budget_, seed_, assign_, update_, snap_, occupied_kernel_, place_, count_;
+    Kernel points_kernel_, mean_, variation_, budget_, seed_, assign_, update_, snap_, measure_, occupied_kernel_, place_, count_;
     Kernel recall_, classify_, retain_, mask_, keep_, adopt_; // where samples are kept
     Compaction seed_compaction_, sample_compaction_;
     Tree tree_;

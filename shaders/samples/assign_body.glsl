@@ -62,6 +62,5 @@ void main()
     vec3 d = x - clusters[owner].position;
     atomicAdd(sums[owner].count, 1u);
     atomicMin(sums[owner].least_eps, floatBitsToUint(best));
-    atomicMax(sums[owner].greatest_eps, floatBitsToUint(best));
     atomicAdd(sums[owner].distance, uint(min(1.0, length(d) / maxComponent(extent)) * params.fixed_scale));
 }

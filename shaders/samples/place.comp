@@ -37,7 +37,5 @@ void main()
     uint place = kept_size.count + i;
     samples[place] = Sample(point.position, point.normal, vec3(0.0), support, 0.0, point.pixel);
     spheres[place] = vec4(point.position, support);
-    // eps is a metric: from the sample no point is farther than from the centre and from there to the sample.
-    float greatest_eps = uintBitsToFloat(s.greatest_eps) + uintBitsToFloat(s.least_eps);
-    tenures[place] = SampleTenure(greatest_eps, params.least_frames + hash(params.seed, i) % kSampleFrames);
+    tenures[place] = SampleTenure(uintBitsToFloat(s.greatest_eps), params.least_frames + hash(params.seed, i) % kSampleFrames);
 }

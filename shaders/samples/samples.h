@@ -43,7 +43,7 @@ struct ClusterSums // fixed-point, so that the sum does not depend on the order 
     uvec3 normal;   // (n + 1) / 2 in the same units
     uint distance;  // of the points to the centre, in units of 1 / fixed_scale of the scene's longest side
     uint least_eps; // bits of the least eps of its points
-    uint greatest_eps; // bits of the greatest
+    uint greatest_eps; // bits of their greatest eps to the nearest one
     uint nearest;   // index of the point of least eps
 };
 GPU_SIZE(ClusterSums, 44);
