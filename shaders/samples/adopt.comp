@@ -19,7 +19,7 @@ layout(set = 1, binding = 4, scalar) readonly buffer Order { uint order[]; };
 layout(set = 1, binding = 5, scalar) buffer Sums { ClusterSums sums[]; };
 layout(set = 1, binding = 6, scalar) writeonly buffer Owners { uvec2 owners[]; }; // by point: cluster, bits of eps
 layout(set = 1, binding = 7, scalar) readonly buffer Seeds { uint seeds[]; };     // by cluster: the point it started at, ascending
-layout(set = 1, binding = 8, scalar) readonly buffer Claims { uvec2 claims[]; };   // by point: kept sample or kNone, bits of eps
+layout(set = 1, binding = 8, scalar) readonly buffer Claims { uvec2 claims[]; };   // by point: the nearest kept sample or kNone, bits of eps
 #include "shaders/lib/tree.glsl"
 
 uvec2 claimOf(uint point)

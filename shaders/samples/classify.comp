@@ -17,7 +17,8 @@ layout(set = 1, binding = 2, scalar) readonly buffer OldSamples { Sample old_sam
 layout(set = 1, binding = 3, scalar) readonly buffer OldTenures { SampleTenure old_tenures[]; };
 layout(set = 1, binding = 4, scalar) readonly buffer TreeNodes { TreeNode tree_nodes[]; }; // over old samples
 layout(set = 1, binding = 5, scalar) readonly buffer Order { uint order[]; };
-layout(set = 1, binding = 6, scalar) writeonly buffer Claims { uvec2 claims[]; }; // by point: old sample or kNone, bits of eps
+layout(set = 1, binding = 6, scalar) writeonly buffer Claims { uvec2 claims[]; }; // by point: old sample, with kKeptBit where that takes it, or
+                                                                             // kNone; bits of eps
 layout(set = 1, binding = 7, scalar) buffer Sums { ClusterSums sums[]; };         // by old sample
 layout(set = 1, binding = 8, scalar) buffer Quota { SampleQuota quota; };         // 0 before
 #include "shaders/lib/tree.glsl"
@@ -49,9 +50,12 @@ void main()
                 radius2 = square(best / params.alpha);
             }
         }
-    if (owner == kNone || best > old_tenures[owner].greatest_eps)
+    if (owner == kNone)
         return;
-    claims[p] = uvec2(owner, floatBitsToUint(best));
+    bool takes = best <= old_tenures[owner].greatest_eps;
+    claims[p] = uvec2(takes ? owner | kKeptBit : owner, floatBitsToUint(best));
+    if (!takes)
+        return;
     atomicAdd(quota.claimed_count, 1u);
     atomicAdd(sums[owner].count, 1u);
     atomicMin(sums[owner].least_eps, floatBitsToUint(best));

@@ -37,5 +37,6 @@ void main()
     uint place = kept_size.count + i;
     samples[place] = Sample(point.position, point.normal, vec3(0.0), support, 0.0, point.pixel);
     spheres[place] = vec4(point.position, support);
-    tenures[place] = SampleTenure(uintBitsToFloat(s.greatest_eps), params.least_frames + hash(params.seed, i) % kSampleFrames);
+    float greatest_eps = max(uintBitsToFloat(s.greatest_eps), params.alpha * 1e-3 * diagonal); // a single point's is 0
+    tenures[place] = SampleTenure(greatest_eps, params.least_frames + hash(params.seed, i) % kSampleFrames);
 }
