@@ -9,6 +9,8 @@ namespace
 {
 constexpr uint32_t kCausticBounces = 2; // photons a caustic path may leave: one, and another behind a smooth layer
 
+constexpr float kGuideReach = 0.05f; // of the scene's diagonal: how far from their camera guided photons serve
+
 constexpr float kSearchRadius = 0.1f; // of the scene's diagonal: how far the nearest sample or cut node may be
 
 /// Progressive photon mapping: r_n^2 / r_0^2 = prod (i + 2/3) / (i + 1) over the n frames before (Hachisuka et al. 2008;
@@ -33,6 +35,7 @@ struct GlobalIllumination::Frame
     uint32_t pixel_count;
     uint32_t index; // in a standing picture
     uint32_t seed;  // of this frame alone
+    bool moved;     // the camera, since the last frame
     bool shows(uint32_t term) const
     {
         if (settings.view != gpu::kViewNone)
@@ -57,7 +60,7 @@ Status GlobalIllumination::checkCounts(uint64_t range, const Settings& settings)
 
 GlobalIllumination::GlobalIllumination(const Device& device, const SceneGpu& scene, const Settings& settings, uint32_t width,
                                        uint32_t height)
-    : width_(width), height_(height), diagonal_(0), longest_side_(0), has_specular_(scene.hasFeature(gpu::kFeatureSpecular)),
+    : scene_(scene), width_(width), height_(height), diagonal_(0), longest_side_(0), has_specular_(scene.hasFeature(gpu::kFeatureSpecular)),
       reflects_roughly_(scene.reflectsRoughly()),
       has_caustic_targets_(scene.info().caustic_target_count > 0),
       has_mirrors_(has_caustic_targets_ || scene.hasFeature(gpu::kFeatureTransmission | gpu::kFeatureThin)), primary_(device, scene, width * height), direct_(device, scene, width * height),
@@ -78,7 +81,8 @@ GlobalIllumination::GlobalIllumination(const Device& device, const SceneGpu& sce
         guide_.emplace(device, scene, settings.photon_count);
 }
 
-const Buffer& GlobalIllumination::record(Recorder& rec, const RayStage& rays, const gpu::CameraParams& camera, const Settings& settings)
+const Buffer& GlobalIllumination::record(Recorder& rec, const RayStage& rays, const gpu::CameraParams& camera, const Settings& settings,
+                                         bool moved)
 {
     const auto primary = primary_.record(rec, rays, {.camera = camera, .specular_depth = settings.specular_depth});
     const Frame frame{.rec = rec,
@@ -90,7 +94,8 @@ const Buffer& GlobalIllumination::record(Recorder& rec, const RayStage& rays, co
                       .radiance = primary.radiance,
                       .pixel_count = width_ * height_,
                       .index = camera.first_sample,
-                      .seed = traceSeed(camera.seed, camera.first_sample, gpu::kTermIndirect)};
+                      .seed = traceSeed(camera.seed, camera.first_sample, gpu::kTermIndirect),
+                      .moved = moved};
     if (!frame.shows(gpu::kTermEmission))
         rec.clear(frame.radiance);
     if (frame.shows(gpu::kTermDirect))
@@ -133,18 +138,22 @@ void GlobalIllumination::recordDirect(const Frame& frame) const
                     .seed = frame.camera.seed});
 }
 
+PhotonStage::Input GlobalIllumination::photonInput(const Frame& frame) const
+{
+    return {.path_count = frame.settings.photon_count,
+            .bounce_limit = frame.settings.photon_bounces,
+            .specular_depth = chainDepth(frame.settings),
+            .first_path = frame.index * frame.settings.photon_count,
+            .seed = frame.camera.seed,
+            .guide = guide_ ? &*guide_ : nullptr};
+}
+
 PhotonStage::Output GlobalIllumination::emitPhotons(const Frame& frame)
 {
-    const Settings& settings = frame.settings;
-    const PhotonStage::Output stored = photons_.record(frame.rec, frame.rays,
-                                                       {.path_count = settings.photon_count,
-                                                        .bounce_limit = settings.photon_bounces,
-                                                        .specular_depth = chainDepth(settings),
-                                                        .first_path = frame.index * settings.photon_count,
-                                                        .seed = frame.camera.seed,
-                                                        .guide = guide_ ? &*guide_ : nullptr});
+    const PhotonStage::Input in = photonInput(frame);
+    const PhotonStage::Output stored = photons_.record(frame.rec, frame.rays, in);
     if (guide_)
-        guide_->learn(frame.rec, stored.photons, stored.flags, settings.photon_count, settings.photon_bounces);
+        guide_->learn(frame.rec, stored.photons, stored.flags, in.path_count, in.bounce_limit);
     return stored;
 }
 
@@ -153,12 +162,36 @@ PhotonStage::Output GlobalIllumination::emitPhotons(const Frame& frame)
 void GlobalIllumination::rehearse(const Frame& frame)
 {
     guide_->reset(frame.rec);
-    gather_.look(frame.rec, frame.rays, recordSamples(frame), gatherInput(frame), *guide_);
+    gather_.look(frame.rec, frame.rays, samples_.record(frame.rec, frame.rays, samplesInput(frame, 0)), gatherInput(frame), *guide_);
     emitPhotons(frame);
+}
+
+/// Whether the map that `made` tells of is the one that `in` would give; else notes that it is about to be made. A standing
+/// picture asks for other photons in every frame.
+bool GlobalIllumination::isThere(const Frame& frame, std::optional<MapOrigin>& made, const PhotonStage::Input& in) const
+{
+    const MapOrigin asked{.lights = scene_.lightsVersion(), .in = in};
+    if (frame.settings.reuse_photons && made == asked)
+        return true;
+    made = asked;
+    return false;
+}
+
+/// Guided photons are where the camera that they were made for wants light: far from there others are due.
+bool GlobalIllumination::isFar(const Frame& frame) const
+{
+    const gpu::vec3 a = frame.camera.position, b = map_camera_;
+    return guide_ && std::hypot(a.x - b.x, a.y - b.y, a.z - b.z) > kGuideReach * diagonal_;
 }
 
 PhotonTreeStage::Output GlobalIllumination::recordPhotons(const Frame& frame)
 {
+    if (isFar(frame))
+        global_map_.reset();
+    if (isThere(frame, global_map_, photonInput(frame)))
+        return photon_tree_.output();
+    made_cut_.reset();
+    map_camera_ = frame.camera.position;
     const PhotonStage::Output stored = [&]
     {
         const auto scope = frame.rec.scope("photons");
@@ -170,32 +203,47 @@ PhotonTreeStage::Output GlobalIllumination::recordPhotons(const Frame& frame)
     return photon_tree_.record(frame.rec, frame.rays, stored);
 }
 
-CutStage::Output GlobalIllumination::recordCut(const Frame& frame, const PhotonTreeStage::Output& map) const
+CutStage::Output GlobalIllumination::recordCut(const Frame& frame, const PhotonTreeStage::Output& map)
 {
     const Settings& settings = frame.settings;
     const auto scope = frame.rec.scope("cut");
-    return cut_.record(frame.rec, frame.rays, map,
-                       {.mode = CutMode(settings.cut_mode),
-                        .iterations = settings.cut_iterations,
-                        .difference = settings.cut_difference,
-                        .photon_count = settings.density_photons,
-                        .radius = shrunkRadius(settings.density_radius * diagonal_, frame.index),
-                        .shrink = shrunkRadius(1, frame.index),
-                        .probes = settings.cut_probes,
-                        .seed = frame.seed});
+    const CutStage::Input in{.mode = CutMode(settings.cut_mode),
+                             .iterations = settings.cut_iterations,
+                             .difference = settings.cut_difference,
+                             .photon_count = settings.density_photons,
+                             .radius = shrunkRadius(settings.density_radius * diagonal_, frame.index),
+                             .shrink = shrunkRadius(1, frame.index),
+                             .probes = settings.cut_probes,
+                             .seed = frame.seed};
+    if (made_cut_ == in)
+        return cut_.output();
+    made_cut_ = in;
+    return cut_.record(frame.rec, frame.rays, map, in);
 }
 
-SamplesStage::Output GlobalIllumination::recordSamples(const Frame& frame) const
+/// Samples are kept from the first frame of one picture to that of the next where nothing but the camera has changed. A
+/// standing picture takes new ones in every frame.
+uint32_t GlobalIllumination::sampleAge(const Frame& frame)
+{
+    const SamplesOrigin now{.lights = scene_.lightsVersion(), .seed = frame.camera.seed, .settings = frame.settings};
+    const bool keeps = frame.settings.reuse_samples && frame.moved && frame.index == 0 && last_samples_ == now;
+    last_samples_ = frame.index == 0 ? std::optional(now) : std::nullopt;
+    sample_age_ = keeps ? sample_age_ + 1 : 0;
+    return sample_age_;
+}
+
+/// @param age frames since all samples were new
+SamplesStage::Input GlobalIllumination::samplesInput(const Frame& frame, uint32_t age) const
 {
     const Settings& settings = frame.settings;
-    return samples_.record(frame.rec, frame.rays,
-                           {.diffuse_points = frame.diffuse_points,
-                            .mode = SamplesMode(settings.samples_mode),
-                            .budget = settings.sample_count,
-                            .iterations = settings.sample_iterations,
-                            .alpha = settings.sample_alpha * 2 / longest_side_,
-                            .reach = settings.sample_reach,
-                            .seed = frame.seed});
+    return {.diffuse_points = frame.diffuse_points,
+            .mode = SamplesMode(settings.samples_mode),
+            .budget = settings.sample_count,
+            .iterations = settings.sample_iterations,
+            .alpha = settings.sample_alpha * 2 / longest_side_,
+            .reach = settings.sample_reach,
+            .seed = frame.seed,
+            .age = age};
 }
 
 GatherStage::Input GlobalIllumination::gatherInput(const Frame& frame) const
@@ -206,7 +254,7 @@ GatherStage::Input GlobalIllumination::gatherInput(const Frame& frame) const
             .specular_depth = chainDepth(settings),
             .photon_count = settings.density_photons,
             .radius = (settings.cut_mode == gpu::kCutKnn ? settings.density_radius : kSearchRadius) * diagonal_,
-            .seed = frame.seed,
+            .seed = samplesInput(frame, sample_age_).frameSeed(),
             .by_direction = reflectsByHarmonics(frame)};
 }
 
@@ -216,7 +264,7 @@ InterpolateStage::Sorted GlobalIllumination::recordGather(const Frame& frame, co
     const SamplesStage::Output samples = [&]
     {
         const auto scope = frame.rec.scope("samples");
-        return recordSamples(frame);
+        return samples_.record(frame.rec, frame.rays, samplesInput(frame, sampleAge(frame)));
     }();
     {
         const auto scope = frame.rec.scope("gather");
@@ -261,20 +309,20 @@ void GlobalIllumination::recordGlossy(const Frame& frame, const CutStage::Output
     glossy_.record(frame.rec, frame.rays, cut, in);
 }
 
-void GlobalIllumination::recordCaustics(const Frame& frame) const
+void GlobalIllumination::recordCaustics(const Frame& frame)
 {
     const Settings& settings = frame.settings;
     const auto scope = frame.rec.scope("caustics");
     // Without mirrors and glass to aim at there are only the faint reflections of smooth layers: few photons will do.
     const uint32_t path_count = has_caustic_targets_ ? settings.caustic_photons : settings.caustic_photons / 8;
-    const auto stored = caustic_photons_.record(frame.rec, frame.rays,
-                                                {.path_count = path_count,
-                                                 .bounce_limit = kCausticBounces,
-                                                 .specular_depth = chainDepth(settings),
-                                                 .first_path = frame.index * path_count,
-                                                 .seed = frame.camera.seed + gpu::kTermCaustics});
-    const auto map = caustic_tree_.record(frame.rec, frame.rays, stored);
-    caustics_.record(frame.rec, map,
+    const PhotonStage::Input in{.path_count = path_count,
+                                .bounce_limit = kCausticBounces,
+                                .specular_depth = chainDepth(settings),
+                                .first_path = frame.index * path_count,
+                                .seed = frame.camera.seed + gpu::kTermCaustics};
+    if (!isThere(frame, caustic_map_, in))
+        caustic_tree_.record(frame.rec, frame.rays, caustic_photons_.record(frame.rec, frame.rays, in));
+    caustics_.record(frame.rec, caustic_tree_.output(),
                      {.points = frame.points,
                       .radiance = frame.radiance,
                       .point_count = frame.pixel_count,

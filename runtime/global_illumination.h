@@ -25,8 +25,12 @@ public:
 
     /// Records one frame: one sample a pixel, vec3[width * height]; of settings.term alone where that is not all, and
     /// the colours of settings.view where that is one, whatever the term.
+    /// Photons, their trees and the cut are kept from one record() to the next where they would come out the same
+    /// (reuse.photons), irradiance samples where only the camera has moved (reuse.samples).
     /// @param camera with first_sample: the frame's index in a standing picture
-    const Buffer& record(Recorder& rec, const RayStage& rays, const gpu::CameraParams& camera, const Settings& settings);
+    /// @param moved since the last record(), which this one follows; false: nothing is known of what was there before
+    const Buffer& record(Recorder& rec, const RayStage& rays, const gpu::CameraParams& camera, const Settings& settings,
+                         bool moved = false);
     /// Of the last frame; waits for the device.
     std::vector<gpu::Sample> irradianceSamples(const Device& device) const { return samples_.download(device); }
 
@@ -34,19 +38,30 @@ private:
     struct Frame;
     uint32_t chainDepth(const Settings& settings) const;
     void recordDirect(const Frame& frame) const;
+    PhotonStage::Input photonInput(const Frame& frame) const;
     PhotonStage::Output emitPhotons(const Frame& frame);
-    PhotonTreeStage::Output recordPhotons(const Frame& frame);
     void rehearse(const Frame& frame);
-    SamplesStage::Output recordSamples(const Frame& frame) const;
+    bool isFar(const Frame& frame) const;
+    PhotonTreeStage::Output recordPhotons(const Frame& frame);
+    CutStage::Output recordCut(const Frame& frame, const PhotonTreeStage::Output& map);
+    SamplesStage::Input samplesInput(const Frame& frame, uint32_t age) const;
     GatherStage::Input gatherInput(const Frame& frame) const;
-    CutStage::Output recordCut(const Frame& frame, const PhotonTreeStage::Output& map) const;
     bool reflectsByHarmonics(const Frame& frame) const;
     InterpolateStage::Sorted recordGather(const Frame& frame, const PhotonTreeStage::Output& map, const CutStage::Output& cut);
     void recordIndirect(const Frame& frame, const InterpolateStage::Sorted& samples) const;
     void recordGlossy(const Frame& frame, const CutStage::Output& cut, const InterpolateStage::Sorted* samples) const;
-    void recordCaustics(const Frame& frame) const;
+    void recordCaustics(const Frame& frame);
     void recordView(const Frame& frame) const;
 
+    struct MapOrigin // what a photon map was made from
+    {
+        uint64_t lights; // SceneGpu::lightsVersion()
+        PhotonStage::Input in;
+        bool operator==(const MapOrigin&) const = default;
+    };
+    bool isThere(const Frame& frame, std::optional<MapOrigin>& made, const PhotonStage::Input& in) const;
+
+    const SceneGpu& scene_;
     uint32_t width_, height_;
     float diagonal_, longest_side_; // of the scene, metres
     bool has_specular_, reflects_roughly_, has_caustic_targets_, has_mirrors_;
@@ -62,4 +77,18 @@ private:
     GlossyStage glossy_;
     CausticsStage caustics_;
     ViewsStage views_;
+    gpu::vec3 map_camera_{};                            // where the camera was when the global map was made
+    std::optional<MapOrigin> global_map_, caustic_map_; // that lie in the stages' buffers
+    std::optional<CutStage::Input> made_cut_;           // over that global map
+
+    struct SamplesOrigin // what samples were gathered under
+    {
+        uint64_t lights;
+        uint32_t seed;
+        Settings settings;
+        bool operator==(const SamplesOrigin&) const = default;
+    };
+    uint32_t sampleAge(const Frame& frame);
+    std::optional<SamplesOrigin> last_samples_; // of the last frame, where it was the first of its picture
+    uint32_t sample_age_ = 0;                   // frames since all samples were new
 };

@@ -33,7 +33,7 @@ Status Renderer::checkSize(const Device& device, uint32_t width, uint32_t height
 }
 
 Renderer::Renderer(const Device& device, const SceneGpu& scene, Mode mode, uint32_t width, uint32_t height, const Settings& settings)
-    : width_(width), height_(height), max_batch_(mode == Mode::kReference ? batchFor(device, width * height) : 1),
+    : scene_(scene), width_(width), height_(height), max_batch_(mode == Mode::kReference ? batchFor(device, width * height) : 1),
       rays_(device, scene), resolve_(device, width * height)
 {
     if (mode == Mode::kReference)
@@ -52,9 +52,11 @@ void Renderer::record(Recorder& rec, const Camera& camera, const Settings& setti
     check(sample_count >= 1 && sample_count <= max_batch_, "{} samples in a frame of at most {}", sample_count, max_batch_);
     gpu::CameraParams view = cameraParams(camera, width_, height_);
     view.seed = seed;
-    if (!last_camera_ || !sameView(*last_camera_, view))
+    const bool moved = last_camera_ && !sameView(*last_camera_, view);
+    if (!last_camera_ || moved || last_lights_ != scene_.lightsVersion())
         resolve_.restart(rec);
     last_camera_ = view;
+    last_lights_ = scene_.lightsVersion();
     view.sample_count = sample_count;
     const bool repeat = gi_ && showsOneFrame(settings.view); // a debug view stands still
     view.first_sample = repeat ? 0 : resolve_.sampleCount();
@@ -69,7 +71,7 @@ void Renderer::record(Recorder& rec, const Camera& camera, const Settings& setti
     }
     if (gi_)
     {
-        resolve_.accumulate(rec, gi_->record(rec, rays_, view, settings), pixel_count, 1);
+        resolve_.accumulate(rec, gi_->record(rec, rays_, view, settings, moved), pixel_count, 1);
         return;
     }
     const auto primary = primary_->record(rec, rays_, {.camera = view, .specular_depth = settings.specular_depth});

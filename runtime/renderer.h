@@ -31,7 +31,7 @@ public:
     /// Mode::kGi allocates for the counts in `settings`; record() may then be given smaller ones.
     Renderer(const Device& device, const SceneGpu& scene, Mode mode, uint32_t width, uint32_t height, const Settings& settings = {});
 
-    /// Records one frame, `sample_count` more samples a pixel. A changed camera starts the picture anew.
+    /// Records one frame, `sample_count` more samples a pixel. A changed camera or light starts the picture anew.
     void record(Recorder& rec, const Camera& camera, const Settings& settings, uint32_t seed, uint32_t sample_count = 1);
     /// The next record() starts the picture anew: settings that decide what samples show have changed.
     void restart() { last_camera_.reset(); }
@@ -53,6 +53,7 @@ public:
     void countRays(RayTally* tally) { rays_.countInto(tally); }
 
 private:
+    const SceneGpu& scene_;
     uint32_t width_, height_, max_batch_;
     RayStage rays_;
     std::optional<PrimaryStage> primary_;
@@ -61,4 +62,5 @@ private:
     std::optional<GlobalIllumination> gi_;
     ResolveStage resolve_;
     std::optional<gpu::CameraParams> last_camera_;
+    uint64_t last_lights_ = 0;
 };

@@ -122,9 +122,10 @@ SceneGpu::~SceneGpu()
     vkDestroySampler(device_.handle(), environment_sampler_, nullptr);
 }
 
-void SceneGpu::setLight(Recorder& rec, uint32_t index, const gpu::Light& light) const
+void SceneGpu::setLight(Recorder& rec, uint32_t index, const gpu::Light& light)
 {
     check(index < info_.light_count, "light {} of {}", index, info_.light_count);
+    ++lights_version_;
     rec.write(buffers_[gpu::kLightsBinding - gpu::kBvhNodesBinding], index * sizeof(light), std::as_bytes(std::span(&light, 1)));
 }
 

@@ -32,7 +32,9 @@ public:
     /// Some opaque material reflects so roughly that spherical harmonics can stand for rays (shaders/gather/harmonics.h).
     bool reflectsRoughly() const { return reflects_roughly_; }
     /// Replaces light `index` from the next kernel of `rec` on; with the kind and pmf it has, on which other tables rest.
-    void setLight(Recorder& rec, uint32_t index, const gpu::Light& light) const;
+    void setLight(Recorder& rec, uint32_t index, const gpu::Light& light);
+    /// Grows whenever a light is replaced: what was made under another version is out of date.
+    uint64_t lightsVersion() const { return lights_version_; }
     /// By light index.
     std::span<const LightShare> lightShares() const { return light_shares_; }
     /// Some light has an extent, so that a ray may find it: an emissive triangle or an environment.
@@ -46,6 +48,7 @@ private:
     const Device& device_;
     gpu::SceneInfo info_{};
     std::vector<LightShare> light_shares_;
+    uint64_t lights_version_ = 0;
     std::array<uint32_t, 2> constants_{};
     bool reflects_roughly_ = false;
     Buffer info_buffer_;

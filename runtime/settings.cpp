@@ -35,6 +35,8 @@ constexpr std::array kKnobs{
     Knob{"caustics.photons", &Settings::caustic_photons, 256, 4e6, "", "photon paths aimed at specular objects a frame"},
     Knob{"caustics.nearest", &Settings::caustic_density_photons, 8, 1024, "", "photons of a caustic's density estimate"},
     Knob{"caustics.radius", &Settings::caustic_radius, 1e-4, 1, "of the scene's diagonal", "how far that estimate may reach"},
+    Knob{"reuse.photons", &Settings::reuse_photons, 0, 1, "", "whether photons and cut are kept while only the camera moves", "off,on"},
+    Knob{"reuse.samples", &Settings::reuse_samples, 0, 1, "", "whether irradiance samples are kept while only the camera moves", "off,on"},
     Knob{"reference_depth", &Settings::reference_depth, 1, 1024, "", "most vertices of a path of the reference"},
     Knob{"term", &Settings::term, gpu::kTermAll, gpu::kTermGlossy, "",
          "light paths shown in modes gi and reference; the others sum to all",

@@ -36,11 +36,15 @@ struct Settings
     uint32_t caustic_photons = 100000; // paths
     uint32_t caustic_density_photons = 200;
     float caustic_radius = 0.05f; // of the scene's diagonal
+    uint32_t reuse_photons = 1; // 0 or 1
+    uint32_t reuse_samples = 0; // 0 or 1
     uint32_t reference_depth = 64;
     uint32_t term = 0; // gpu::kTerm*
     uint32_t view = 0; // gpu::kView*
     float exposure = 0;
     uint32_t tonemap = 2; // Tonemap
+
+    bool operator==(const Settings&) const = default;
 };
 
 /// Settings of a preset: preview (for CPUs and slow GPUs), default, high. @return kUsage listing the presets

@@ -7,25 +7,27 @@
 #     --size WxH         default 320x180
 #     --spp N            samples a pixel of the reference; default 4096
 #     --seeds N          first frames to average over; default 4
+#     --travel N         frames of a moving camera before the rows that show what reuse is worth; default 60
 #     --set NAME=VALUE   a setting of all rows; repeatable
 #     --row "NAME=VALUE..."   one more row; repeatable
 # The reference's own noise is part of every error. LUMICUT_BIN=FOLDER uses the programs there instead of building.
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/bench/scenes.sh"
 
-quick=0 scene=atrium size= spp= seeds=4 out=$root/build/truth
+quick=0 scene=atrium size= spp= seeds=4 travel= out=$root/build/truth
 common=() extra=()
 while (($#)); do
     case $1 in
     --help | -h) usage_of "${BASH_SOURCE[0]}" && exit ;;
     --quick) quick=1 ;;
-    --scene | --size | --spp | --seeds | --set | --row)
+    --scene | --size | --spp | --seeds | --travel | --set | --row)
         need_value "$1" $#
         case $1 in
         --scene) scene=$2 ;;
         --size) size=$2 ;;
         --spp) spp=$2 ;;
         --seeds) seeds=$2 ;;
+        --travel) travel=$2 ;;
         --set) common+=(--set "$2") ;;
         --row) extra+=("$2") ;;
         esac
@@ -36,7 +38,7 @@ while (($#)); do
     esac
     shift
 done
-: "${spp:=$((quick ? 256 : 4096))}" "${size:=$((quick ? 128 : 320))x$((quick ? 72 : 180))}"
+: "${travel:=$((quick ? 20 : 60))}" "${spp:=$((quick ? 256 : 4096))}" "${size:=$((quick ? 128 : 320))x$((quick ? 72 : 180))}"
 mkdir -p "$out"
 build_programs
 
@@ -55,22 +57,34 @@ package=$(package_of "$scene")
 [[ -n $package ]] || exit 0
 reference=$(reference_of "$package" "$size" "$spp" all)
 
-echo "$scene, $size, first frame, mean of $seeds seeds, against $spp samples a pixel; ${common[*]:-default settings}"
-printf '%-28s %9s %9s %7s  %9s %9s %9s %9s %9s\n' changed relMSE trimmed ratio 'frame ms' cut samples gather interpol.
-for row in "${rows[@]}" ${extra[@]+"${extra[@]}"}; do
-    changes=()
+# Prints one row. $1: what is changed, NAME=VALUE separated by spaces; further arguments go to lumicut-bench converge.
+print_row() {
+    local row=$1 changes=() change result
+    shift
     for change in $row; do
         changes+=(--set "$change")
     done
     result=$("$bin/lumicut-bench" converge "$package" "$reference" --frames 1 --seeds "$seeds" --stages \
-        ${common[@]+"${common[@]}"} ${changes[@]+"${changes[@]}"})
+        ${common[@]+"${common[@]}"} ${changes[@]+"${changes[@]}"} "$@")
     awk -v changed="${row:-(nothing)}" '
         $1 == 1 { ratio = ($3 + $4 + $5) / 3; relmse = $6; trimmed = $7 }
         $1 == "stage" { ms[$2] = $3 }
         END {
-            printf "%-28s %9.3g %9.3g %7.4f  %9.3f %9.3f %9.3f %9.3f %9.3f\n", changed, relmse, trimmed, ratio, ms["frame"], ms["cut"],
+            printf "%-36s %9.3g %9.3g %7.4f  %9.3f %9.3f %9.3f %9.3f %9.3f\n", changed, relmse, trimmed, ratio, ms["frame"], ms["cut"],
                 ms["samples"], ms["gather"], ms["interpolate"]
         }' <<<"$result"
+}
+
+echo "$scene, $size, first frame, mean of $seeds seeds, against $spp samples a pixel; ${common[*]:-default settings}"
+printf '%-36s %9s %9s %7s  %9s %9s %9s %9s %9s\n' changed relMSE trimmed ratio 'frame ms' cut samples gather interpol.
+for row in "${rows[@]}" ${extra[@]+"${extra[@]}"}; do
+    print_row "$row"
+done
+
+echo
+echo "temporal reuse: the same, the frame as the camera comes to rest there after $travel frames of swaying"
+for row in "" reuse.samples=off reuse.photons=off "reuse.photons=off reuse.samples=off"; do
+    print_row "$row" --travel "$travel"
 done
 
 echo

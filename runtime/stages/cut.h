@@ -21,6 +21,7 @@ public:
         float shrink;         // of the nodes' supports, <= 1: in a standing picture they may be as noisy as they are sharp
         uint32_t probes;      // rays that a node feels for its surface with; 0: it is taken for a plane
         uint32_t seed;
+        bool operator==(const Input&) const = default; // equal input over one map gives one cut
     };
     struct Output
     {

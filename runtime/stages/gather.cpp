@@ -3,12 +3,13 @@
 GatherStage::GatherStage(const Device& device, const SceneGpu& scene, uint32_t max_samples, uint32_t max_rays_per_sample)
     : max_samples_(max_samples), has_specular_(scene.hasFeature(gpu::kFeatureSpecular)), generate_(device.kernel("gather/generate")),
       link_(device.kernel("gather/link", scene.constants())), link_knn_(device.kernel("gather/link_knn", scene.constants())),
-      sum_(device.kernel("gather/sum")), project_(device.kernel("gather/project", scene.constants())), queue_(device, "gather.queue", max_samples * max_rays_per_sample),
+      sum_(device.kernel("gather/sum")), carry_(device.kernel("gather/carry")), project_(device.kernel("gather/project", scene.constants())), queue_(device, "gather.queue", max_samples * max_rays_per_sample),
       next_queue_(device, "gather.next_queue", max_samples * max_rays_per_sample),
       hits_(device.texelArray<gpu::Hit>("gather.hits", uint64_t(max_samples) * max_rays_per_sample)),
       states_(device.array<gpu::GatherState>("gather.states", uint64_t(max_samples) * max_rays_per_sample)),
       gathered_(device.array<gpu::Gathered>("gather.gathered", uint64_t(max_samples) * max_rays_per_sample)),
-      harmonics_(device.array<gpu::SampleHarmonics>("gather.harmonics", scene.reflectsRoughly() ? max_samples : 1))
+      harmonics_(device.texelArray<gpu::SampleHarmonics>("gather.harmonics", scene.reflectsRoughly() ? max_samples : 1)),
+      old_harmonics_(device.array<gpu::SampleHarmonics>("gather.old_harmonics", scene.reflectsRoughly() ? max_samples : 1))
 {
 }
 
@@ -16,7 +17,8 @@ void GatherStage::look(Recorder& rec, const RayStage& rays, const SamplesStage::
                        GuideStage* guide) const
 {
     rec.run(generate_, max_samples_ * params.ray_count, params,
-            {{"Size", samples.size}, {"Samples", samples.samples}, {"Queue", queue_.size}, {"Rays", queue_.rays}});
+            {{"Size", samples.size}, {"Samples", samples.samples}, {"Queue", queue_.size}, {"Rays", queue_.rays},
+             {"KeptSize", samples.kept}});
     rays.closest(rec, queue_, hits_, traceSeed(params.seed, 0, 0));
     if (guide)
         guide->mark(rec, queue_, max_samples_ * params.ray_count, hits_);
@@ -62,8 +64,13 @@ void GatherStage::record(Recorder& rec, const RayStage& rays, const SamplesStage
         std::swap(queue, next);
     }
     rec.run(sum_, max_samples_ * gpu::kRaysGroupSize, params,
-            {{"Size", samples.size}, {"GatheredBlock", gathered_}, {"Samples", samples.samples}});
-    if (in.by_direction)
-        rec.run(project_, max_samples_ * gpu::kRaysGroupSize, params,
-                {{"Size", samples.size}, {"GatheredBlock", gathered_}, {"Samples", samples.samples}, {"Harmonics", harmonics_}});
+            {{"Size", samples.size}, {"GatheredBlock", gathered_}, {"Samples", samples.samples}, {"KeptSize", samples.kept}});
+    if (!in.by_direction)
+        return;
+    rec.copy(harmonics_, old_harmonics_, harmonics_.size());
+    rec.runIndirect(carry_, samples.kept, 0, NoParams{},
+                    {{"KeptSize", samples.kept}, {"Kept", samples.kept_from}, {"OldHarmonics", old_harmonics_}, {"Harmonics", harmonics_}});
+    rec.run(project_, max_samples_ * gpu::kRaysGroupSize, params,
+            {{"Size", samples.size}, {"GatheredBlock", gathered_}, {"Samples", samples.samples}, {"Harmonics", harmonics_},
+             {"KeptSize", samples.kept}});
 }

@@ -47,10 +47,10 @@ bool GuideStage::helps(const SceneGpu& scene)
 GuideStage::GuideStage(const Device& device, const SceneGpu& scene, uint32_t max_paths)
     : emit_(device.kernel("guide/emit", scene.constants())), mark_(device.kernel("guide/mark", scene.constants())),
       score_(device.kernel("guide/score", scene.constants())), learn_(device.kernel("guide/learn")),
-      cumulative_(device.array<float>("guide.cumulative", gpu::kGuideGroups * gpu::kGuideCells)),
+      distribution_(device.array<gpu::GuideDistribution>("guide.distribution", 1)),
       cells_(device.array<uint32_t>("guide.cells", max_paths)),
       wanted_(device.array<uint32_t>("guide.wanted", gpu::kGuideVoxels * gpu::kGuideVoxels * gpu::kGuideVoxels)),
-      scores_(device.array<gpu::GuideScore>("guide.scores", gpu::kGuideGroups * gpu::kGuideCells))
+      scores_(device.array<gpu::GuideScore>("guide.scores", gpu::kGuideTotal))
 {
     const LightGroups lights = groupsOf(scene.lightShares());
     groups_ = device.upload<gpu::GuideGroups>("guide.groups", std::span(&lights.groups, 1));
@@ -62,13 +62,13 @@ void GuideStage::reset(Recorder& rec)
     has_learned_ = false;
     rec.clear(scores_);
     rec.clear(wanted_);
-    rec.run(learn_, gpu::kGuideLearnSize, NoParams{}, {{"Groups", groups_}, {"Scores", scores_}, {"Cumulative", cumulative_}});
+    rec.run(learn_, gpu::kGuideLearnSize, NoParams{}, {{"Groups", groups_}, {"Scores", scores_}, {"Distribution", distribution_}});
 }
 
 void GuideStage::emit(Recorder& rec, const Buffer& starts, const gpu::EmitParams& params) const
 {
     rec.run(emit_, params.path_count, params,
-            {{"Groups", groups_}, {"Cumulative", cumulative_}, {"OtherLights", other_lights_}, {"Starts", starts}, {"Cells", cells_}});
+            {{"Groups", groups_}, {"Distribution", distribution_}, {"OtherLights", other_lights_}, {"Starts", starts}, {"Cells", cells_}});
 }
 
 void GuideStage::mark(Recorder& rec, const RayQueue& queue, uint32_t max_rays, const Buffer& hits)
@@ -82,7 +82,7 @@ void GuideStage::learn(Recorder& rec, const Buffer& photons, const Buffer& flags
 {
     has_learned_ = true;
     rec.run(score_, path_count, gpu::ScoreParams{.path_count = path_count, .bounce_limit = bounce_limit},
-            {{"Groups", groups_}, {"Cumulative", cumulative_}, {"Cells", cells_}, {"Photons", photons}, {"Flags", flags},
+            {{"Groups", groups_}, {"Distribution", distribution_}, {"Cells", cells_}, {"Photons", photons}, {"Flags", flags},
              {"Wanted", wanted_}, {"Scores", scores_}});
-    rec.run(learn_, gpu::kGuideLearnSize, NoParams{}, {{"Groups", groups_}, {"Scores", scores_}, {"Cumulative", cumulative_}});
+    rec.run(learn_, gpu::kGuideLearnSize, NoParams{}, {{"Groups", groups_}, {"Scores", scores_}, {"Distribution", distribution_}});
 }

@@ -19,7 +19,7 @@ public:
 
     // What was learned last, for tests and views.
     const Buffer& cells() const { return cells_; }           // uint[path_count]: where each path left; kNone: it did not
-    const Buffer& cumulative() const { return cumulative_; } // float[groups x cells]: probability of a cell and those before it
+    const Buffer& distribution() const { return distribution_; } // gpu::GuideDistribution
     const Buffer& wanted() const { return wanted_; }         // uint[kGuideVoxels^3]: 1 where gathering rays end
 
     /// `params.path_count` photons leave the lights by what was learned. @param starts gpu::PhotonStart[path_count]
@@ -34,5 +34,5 @@ public:
 private:
     bool has_learned_ = false;
     Kernel emit_, mark_, score_, learn_;
-    Buffer groups_, other_lights_, cumulative_, cells_, wanted_, scores_;
+    Buffer groups_, other_lights_, distribution_, cells_, wanted_, scores_;
 };

@@ -24,6 +24,7 @@ public:
         uint32_t first_path;     // index of path 0 in the sequence of all frames
         uint32_t seed;
         const GuideStage* guide = nullptr; // says how photons leave; of Kind::kGlobal only
+        bool operator==(const Input&) const = default; // equal input under equal lights gives equal photons
     };
     struct Output
     {

@@ -5,7 +5,7 @@
 #include "shaders/lib/gather_ray.glsl"
 #include "shaders/lib/harmonics.glsl"
 
-// The light of every sample by direction. One group per sample, so that the order of the sum is fixed: the group takes its
+// The light of every new sample by direction. One group per sample, so that the order of the sum is fixed: the group takes its
 // threads' rays together, then each of 48 threads sums one coefficient of one channel.
 
 layout(local_size_x = kRaysGroupSize) in;
@@ -15,6 +15,7 @@ layout(set = 1, binding = 0, scalar) readonly buffer Size { QueueSize size; };
 layout(set = 1, binding = 1, scalar) readonly buffer GatheredBlock { Gathered gathered[]; };
 layout(set = 1, binding = 2, scalar) readonly buffer Samples { Sample samples[]; };
 layout(set = 1, binding = 3, scalar) writeonly buffer Harmonics { SampleHarmonics harmonics[]; };
+layout(set = 1, binding = 4, scalar) readonly buffer KeptSize { QueueSize kept_size; }; // the first samples, which have theirs
 
 shared float basis[kRaysGroupSize][kHarmonicsCount]; // the last is 1: the sum that the others are shares of
 shared float light[kRaysGroupSize][3];
@@ -22,16 +23,16 @@ shared float sums[3u * kHarmonicsCount];
 
 void main()
 {
-    uint sample_ = gl_WorkGroupID.x, t = gl_LocalInvocationID.x;
+    uint new_sample = gl_WorkGroupID.x, sample_ = kept_size.count + new_sample, t = gl_LocalInvocationID.x;
     bool exists = sample_ < size.count;
     vec3 normal = exists ? unpackNormal(samples[sample_].normal) : vec3(0.0, 0.0, 1.0);
     float sum = 0.0;
     for (uint first = 0u; first < params.ray_count; first += kRaysGroupSize)
     {
         uint ray = first + t;
-        vec4 b[4] = harmonicBasis(gatherDirection(normal, sample_, ray, params.seed));
+        vec4 b[4] = harmonicBasis(gatherDirection(normal, new_sample, ray, params.seed));
         b[3].w = 1.0;
-        vec3 radiance = exists && ray < params.ray_count ? gathered[sample_ * params.ray_count + ray].radiance : vec3(0.0);
+        vec3 radiance = exists && ray < params.ray_count ? gathered[new_sample * params.ray_count + ray].radiance : vec3(0.0);
         for (uint k = 0u; k < kHarmonicsCount; ++k)
             basis[t][k] = b[k / 4u][k % 4u];
         for (uint channel = 0u; channel < 3u; ++channel)

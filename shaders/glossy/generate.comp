@@ -23,13 +23,13 @@ void main()
     uint path = gl_GlobalInvocationID.x;
     if (path >= params.point_count || points[path].slot == kNone)
         return;
+    float missing = params.shared_ != 0u ? 1.0 - shares[path] : 1.0;
+    if (missing <= 0.0)
+        return;
     ShadingPoint point = points[path];
     Surface s = surfaceAt(point.slot, point.barycentrics, point.direction);
     Bsdf b = bsdfAt(materialAt(s), s.front);
     if (b.smooth_specular)
-        return;
-    float missing = params.shared_ != 0u ? 1.0 - shares[path] : 1.0;
-    if (missing <= 0.0)
         return;
     mat3 frame = frameAround(s.normal);
     vec3 wo = -point.direction * frame;

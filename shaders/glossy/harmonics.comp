@@ -16,7 +16,7 @@ layout(set = 1, binding = 2) uniform usamplerBuffer Samples;
 layout(set = 1, binding = 3, scalar) readonly buffer Points { ShadingPoint points[]; };
 layout(set = 1, binding = 4, scalar) buffer Radiance { vec3 radiance[]; };
 layout(set = 1, binding = 5, scalar) readonly buffer Order { uint order[]; }; // samples as they were gathered
-layout(set = 1, binding = 6, scalar) readonly buffer Harmonics { SampleHarmonics harmonics[]; };
+layout(set = 1, binding = 6) uniform usamplerBuffer Harmonics; // SampleHarmonics, a texel a channel
 layout(set = 1, binding = 7, scalar) readonly buffer Lobes { GlossyLobe lobes[]; };
 layout(set = 1, binding = 8, scalar) writeonly buffer Shares { float shares[]; }; // of glossy light that needs no ray
 #include "shaders/lib/sample.glsl"
@@ -45,9 +45,10 @@ GlossyLobe lobeAt(float roughness, float cosine)
 /// Light that a sample sends into the lobe, times its evenLight.
 vec3 incidentLight(vec3 irradiance, uint slot, Reflection r)
 {
-    uint w[12] = harmonics[slot].words;
-    return irradiance * max(vec3(channelLight(r, w[0], w[1], w[2], w[3]), channelLight(r, w[4], w[5], w[6], w[7]),
-                                 channelLight(r, w[8], w[9], w[10], w[11])), vec3(0.0));
+    int texel = int(3u * slot);
+    vec3 light = vec3(channelLight(r, texelFetch(Harmonics, texel)), channelLight(r, texelFetch(Harmonics, texel + 1)),
+                      channelLight(r, texelFetch(Harmonics, texel + 2)));
+    return irradiance * max(light, vec3(0.0));
 }
 
 /// pi times the radiance that the lobe sees. @return false where no sample reaches

@@ -11,7 +11,7 @@ layout(local_size_x = kRaysGroupSize) in;
 layout(push_constant, scalar) uniform Params { EmitParams params; };
 
 layout(set = 1, binding = 0, scalar) readonly buffer Groups { GuideGroups groups; };
-layout(set = 1, binding = 1, scalar) readonly buffer Cumulative { float cumulative[]; };
+layout(set = 1, binding = 1, scalar) readonly buffer Distribution { GuideDistribution distribution; };
 layout(set = 1, binding = 2, scalar) readonly buffer OtherLights { float other_lights[]; }; // by light: share of it and those before
 layout(set = 1, binding = 3, scalar) writeonly buffer Starts { PhotonStart starts[]; };
 layout(set = 1, binding = 4, scalar) writeonly buffer Cells { uint cells[]; };

@@ -12,6 +12,7 @@ GPU_CONST uint kGuideSide = 32u;
 GPU_CONST uint kGuideCells = kGuideSide * kGuideSide; // of a group
 GPU_CONST uint kGuideBeams = 7u;                      // that have a group of their own at most
 GPU_CONST uint kGuideGroups = kGuideBeams + 1u;       // the last is that of the other lights
+GPU_CONST uint kGuideTotal = kGuideGroups * kGuideCells;
 GPU_CONST uint kGuideVoxels = 64u;                    // each way, over the scene's box
 GPU_CONST uint kGuideMarkStride = 4u;                 // of this many gathering rays one tells where light is wanted
 GPU_CONST uint kGuideScoreScale = 16u;                // fixed point
@@ -34,6 +35,13 @@ struct GuideScore
     float before; // fading sum over the frames
 };
 GPU_SIZE(GuideScore, 8);
+
+struct GuideDistribution // that photons leave by, learned
+{
+    float groups[kGuideGroups]; // probability of a group and those before it
+    float cells[kGuideTotal];   // within its group, probability of a cell and those before it: no digits are lost on the others
+};
+GPU_SIZE(GuideDistribution, 32800);
 
 struct ScoreParams
 {

@@ -3,37 +3,30 @@
 #extension GL_EXT_scalar_block_layout : require
 #include "shaders/guide/guide.h"
 
-// Makes the distribution that the next photons leave by. One group: each thread takes a run of cells, then the runs add up.
+// Makes the distribution that the next photons leave by. One group: each thread takes a run of cells of one group, then runs
+// add up in order.
 
 layout(local_size_x = kGuideLearnSize) in;
 
 layout(set = 1, binding = 0, scalar) readonly buffer Groups { GuideGroups groups; };
 layout(set = 1, binding = 1, scalar) buffer Scores { GuideScore scores[]; };
-layout(set = 1, binding = 2, scalar) buffer Cumulative { float cumulative[]; };
-#include "shaders/lib/guide.glsl"
+layout(set = 1, binding = 2, scalar) writeonly buffer Distribution { GuideDistribution distribution; };
 
-const uint kRun = kGuideTotal / kGuideLearnSize;
-shared float sums[kGuideLearnSize];
+const uint kRun = kGuideTotal / kGuideLearnSize;    // cells
+const uint kGroupRuns = kGuideCells / kRun;
+shared float sums[kGuideLearnSize]; // of the runs' scores
 
-/// Sum over the runs before this thread's; sums[] then holds the sum of all in its last element.
-float sumBefore(float own)
+float sumOfRuns(uint first, uint end)
 {
-    uint t = gl_LocalInvocationID.x;
-    sums[t] = own;
-    for (uint step_ = 1u; step_ < kGuideLearnSize; step_ *= 2u)
-    {
-        barrier();
-        float other = t >= step_ ? sums[t - step_] : 0.0;
-        barrier();
-        sums[t] += other;
-    }
-    barrier();
-    return t > 0u ? sums[t - 1u] : 0.0;
+    float sum = 0.0;
+    for (uint i = first; i < end; ++i)
+        sum += sums[i];
+    return sum;
 }
 
 void main()
 {
-    uint first = gl_LocalInvocationID.x * kRun;
+    uint run = gl_LocalInvocationID.x, first = run * kRun, group = run / kGroupRuns;
     float own = 0.0;
     for (uint i = first; i < first + kRun; ++i)
     {
@@ -41,19 +34,26 @@ void main()
         scores[i].now = 0u;
         own += scores[i].before;
     }
-    sumBefore(own);
-    float total = sums[kGuideLearnSize - 1u];
+    sums[run] = own;
     barrier();
+    float total = sumOfRuns(0u, kGuideLearnSize);
     float guided = total > 0.0 ? (1.0 - kGuideUnguided) / total : 0.0;
     float unguided = total > 0.0 ? kGuideUnguided : 1.0;
-    own = 0.0;
-    for (uint i = first; i < first + kRun; ++i)
-        own += guided * scores[i].before + unguided * cellShare(i);
-    float running = sumBefore(own);
-    float whole = sums[kGuideLearnSize - 1u]; // 1 but for rounding
+
+    // Probabilities of this group's cells in proportion to these weights.
+    float even = unguided * groups.shares[group] / float(kGuideCells);
+    float of_group = guided * sumOfRuns(group * kGroupRuns, (group + 1u) * kGroupRuns) + unguided * groups.shares[group];
+    float running = guided * sumOfRuns(group * kGroupRuns, run) + even * float((run % kGroupRuns) * kRun);
     for (uint i = first; i < first + kRun; ++i)
     {
-        running += guided * scores[i].before + unguided * cellShare(i);
-        cumulative[i] = i + 1u == kGuideTotal ? 1.0 : running / whole;
+        running += guided * scores[i].before + even;
+        bool last = (i + 1u) % kGuideCells == 0u;
+        distribution.cells[i] = last || of_group == 0.0 ? 1.0 : running / of_group;
     }
+    if (run >= kGuideGroups)
+        return;
+    float before = guided * sumOfRuns(0u, (run + 1u) * kGroupRuns); // of this thread as a group
+    for (uint g = 0u; g <= run; ++g)
+        before += unguided * groups.shares[g];
+    distribution.groups[run] = run + 1u == kGuideGroups ? 1.0 : before;
 }

@@ -9,7 +9,7 @@ layout(local_size_x = kGuideGroupSize) in;
 layout(push_constant, scalar) uniform Params { ScoreParams params; };
 
 layout(set = 1, binding = 0, scalar) readonly buffer Groups { GuideGroups groups; };
-layout(set = 1, binding = 1, scalar) readonly buffer Cumulative { float cumulative[]; };
+layout(set = 1, binding = 1, scalar) readonly buffer Distribution { GuideDistribution distribution; };
 layout(set = 1, binding = 2, scalar) readonly buffer Cells { uint cells[]; }; // by path; kNone: nothing left
 layout(set = 1, binding = 3, scalar) readonly buffer Photons { Photon photons[]; };
 layout(set = 1, binding = 4, scalar) readonly buffer Flags { uint flags[]; };

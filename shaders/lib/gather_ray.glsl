@@ -5,9 +5,9 @@
 #include "shaders/lib/random.glsl"
 
 /// Cosine-distributed about the sample's normal, and stratified over its rays.
-vec3 gatherDirection(vec3 normal, uint sample_, uint ray, uint seed)
+vec3 gatherDirection(vec3 normal, uint new_sample, uint ray, uint seed)
 {
-    Sampler sampler_ = Sampler(hash(seed, sample_), ray, 0u);
+    Sampler sampler_ = Sampler(hash(seed, new_sample), ray, 0u);
     vec2 u = nextPair(sampler_);
     float r = sqrt(u.x), phi = 2.0 * kPi * u.y;
     return frameAround(normal) * vec3(r * cos(phi), r * sin(phi), sqrt(max(0.0, 1.0 - u.x)));

@@ -52,10 +52,10 @@ Reflection reflectionBy(GlossyLobe lobe, vec3 normal, vec3 towards)
 }
 
 /// What the lobe makes of one channel of a sample's light, before it is divided by evenLight.
-float channelLight(Reflection r, uint a, uint b, uint c, uint d)
+float channelLight(Reflection r, uvec4 words)
 {
-    return 1.0 + dot(r.weights[0], unpackSnorm4x8(a)) + dot(r.weights[1], unpackSnorm4x8(b)) +
-           dot(r.weights[2], unpackSnorm4x8(c)) + dot(r.weights[3], unpackSnorm4x8(d));
+    return 1.0 + dot(r.weights[0], unpackSnorm4x8(words.x)) + dot(r.weights[1], unpackSnorm4x8(words.y)) +
+           dot(r.weights[2], unpackSnorm4x8(words.z)) + dot(r.weights[3], unpackSnorm4x8(words.w));
 }
 
 /// The same of even light of irradiance 1. Below the sample's horizon bands cannot say how dark it is.

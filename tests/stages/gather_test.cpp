@@ -15,8 +15,8 @@ constexpr uint32_t kRays = 64;
 /// Samples made by hand.
 struct Samples
 {
-    Buffer size, samples, spheres;
-    SamplesStage::Output output() const { return {.size = size, .samples = samples, .spheres = spheres}; }
+    Buffer size, samples, spheres, kept;
+    SamplesStage::Output output() const { return {.size = size, .samples = samples, .spheres = spheres, .kept = kept, .kept_from = kept}; }
 };
 
 /// Form factor of a rectangle a x b, parallel to a small element at distance c below one of its corners
@@ -82,7 +82,7 @@ protected:
         const uint32_t count = uint32_t(samples.size());
         const auto cut = cutOf(scene, nodes);
         const auto map = mapOf(scene, photons);
-        const Samples on_gpu{.size = sizeBuffer(count), .samples = upload("test.samples", samples), .spheres = {}};
+        const Samples on_gpu{.size = sizeBuffer(count), .samples = upload("test.samples", samples), .spheres = {}, .kept = sizeBuffer(0)};
         const GatherStage stage(device(), scene, std::max(count, 1u), kRays);
         submit(scene,
                [&](Recorder& rec)

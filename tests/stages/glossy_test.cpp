@@ -158,28 +158,26 @@ protected:
         return builder.compile();
     }
     using OnWall = std::function<gpu::vec3(Double3)>; // irradiance by the wall's inward normal
+    /// A node on each wall, so wide that its light is even over the room, to 1e-6.
     static std::vector<gpu::CutNode> wallNodes(const OnWall& irradiance)
     {
         std::vector<gpu::CutNode> nodes;
-        constexpr int kSteps = 8;
         const std::array<float, 3> low{kLow.x, kLow.y, kLow.z}, high{kHigh.x, kHigh.y, kHigh.z};
         for (size_t axis = 0; axis < 3; ++axis)
             for (const bool upper : {false, true})
-                for (int i = 0; i < kSteps * kSteps; ++i)
-                {
-                    const size_t u = (axis + 1) % 3, v = (axis + 2) % 3;
-                    std::array<float, 3> at{};
-                    std::array<double, 3> n{};
-                    at[axis] = upper ? high[axis] : low[axis];
-                    at[u] = low[u] + (high[u] - low[u]) * (float(i % kSteps) + 0.5f) / kSteps;
-                    at[v] = low[v] + (high[v] - low[v]) * (float(i / kSteps) + 0.5f) / kSteps;
-                    n[axis] = upper ? -1 : 1;
-                    const Double3 normal(n[0], n[1], n[2]);
-                    nodes.push_back({.center = {at[0], at[1], at[2]},
-                                     .support = 0.6f,
-                                     .irradiance = irradiance(normal),
-                                     .normal = packedNormal(normal)});
-                }
+            {
+                std::array<float, 3> at{};
+                std::array<double, 3> n{};
+                for (size_t i = 0; i < 3; ++i)
+                    at[i] = 0.5f * (low[i] + high[i]);
+                at[axis] = upper ? high[axis] : low[axis];
+                n[axis] = upper ? -1 : 1;
+                const Double3 normal(n[0], n[1], n[2]);
+                nodes.push_back({.center = {at[0], at[1], at[2]},
+                                 .support = 2000,
+                                 .irradiance = irradiance(normal),
+                                 .normal = packedNormal(normal)});
+            }
         return nodes;
     }
 
@@ -190,12 +188,12 @@ protected:
         const auto cut = cutOf(scene, wallNodes(irradiance));
         const auto map = mapOf(scene, {});
         const Buffer size = sizeBuffer(count), on_gpu = upload("test.samples", samples),
-                     spheres = upload("test.spheres", std::vector<gpu::vec4>(count));
+                     spheres = upload("test.spheres", std::vector<gpu::vec4>(count)), kept = sizeBuffer(0);
         const GatherStage stage(device(), scene, count, kRays);
         submit(scene,
                [&](Recorder& rec)
                {
-                   stage.record(rec, map->rays, {.size = size, .samples = on_gpu, .spheres = spheres}, *map->gpu,
+                   stage.record(rec, map->rays, {.size = size, .samples = on_gpu, .spheres = spheres, .kept = kept, .kept_from = kept}, *map->gpu,
                                 *cut->gpu,
                                 {.mode = CutMode::kRefined,
                                  .ray_count = kRays,
@@ -339,14 +337,14 @@ protected:
                                                                      .harmonic = 1,
                                                                      .pixel = 0}}),
                      spheres = upload<gpu::vec4>("test.spheres", {{kPoint.x, kPoint.y, kPoint.z, 1}}),
-                     harmonics = upload<gpu::SampleHarmonics>("test.harmonics", {light});
+                     harmonics = device().uploadTexels<gpu::SampleHarmonics>("test.harmonics", std::vector{light});
         const InterpolateStage interpolate(device(), 1);
         const GlossyStage stage(device(), scene, kSide * kSide);
         submit(scene,
                [&](Recorder& rec)
                {
                    const auto points = primary.record(rec, rays, {.camera = view, .specular_depth = 1});
-                   const auto sorted = interpolate.sort(rec, {.size = size, .samples = samples, .spheres = spheres});
+                   const auto sorted = interpolate.sort(rec, {.size = size, .samples = samples, .spheres = spheres, .kept = size, .kept_from = size});
                    stage.recordHarmonics(rec, sorted, harmonics,
                                          {.points = points.points,
                                           .radiance = radiance,

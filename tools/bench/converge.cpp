@@ -1,8 +1,10 @@
 #include "tools/bench/converge.h"
 
 #include "runtime/renderer.h"
+#include "tools/bench/motion.h"
 #include "tools/compare/metrics.h"
 #include "tools/image/read_exr.h"
+#include "tools/image/write_image.h"
 
 #include <nlohmann/json.hpp>
 
@@ -31,6 +33,7 @@ struct Convergence
 {
     std::vector<Row> rows;
     StageSamples stages; // of every frame
+    ImageF picture;      // the last one
 };
 
 ImageF pictureOf(const Renderer& renderer, const Device& device)
@@ -56,20 +59,22 @@ Convergence measure(const OpenedPackage& opened, const ImageF& reference, const 
     const Mode mode = options.mode == "gi" ? Mode::kGi : Mode::kReference;
     Renderer renderer(device, *opened.scene, mode, reference.width, reference.height, options.settings);
     Recorder rec(device);
-    Convergence result{.rows = emptyRows(options.frames), .stages = {}};
-    const auto render = [&](uint32_t seed, uint32_t sample_count)
+    Convergence result{.rows = emptyRows(options.frames), .stages = {}, .picture = {}};
+    const auto render = [&](const Camera& camera, uint32_t seed, uint32_t sample_count)
     {
         rec.begin(opened.scene->descriptorSet());
         {
             const auto scope = rec.scope("frame");
-            renderer.record(rec, opened.camera, options.settings, seed, sample_count);
+            renderer.record(rec, camera, options.settings, seed, sample_count);
         }
         return rec.submitAndWait();
     };
-    render(options.seeds, 1); // a driver may finish its kernels only when they first run
+    render(opened.camera, options.seeds, 1); // a driver may finish its kernels only when they first run
     for (uint32_t seed = 0; seed < options.seeds; ++seed)
     {
         renderer.restart();
+        for (int32_t frame = -int32_t(options.travel); frame < 0; ++frame)
+            render(movedCamera(opened.camera, opened.scene->info(), frame), seed, 1);
         uint32_t done = 0;
         double seconds = 0;
         for (Row& row : result.rows)
@@ -78,13 +83,14 @@ Convergence measure(const OpenedPackage& opened, const ImageF& reference, const 
             while (done < row.frames)
             {
                 const uint32_t count = std::min(renderer.maxBatch(), row.frames - done);
-                result.stages.add(render(seed, count));
+                result.stages.add(render(opened.camera, seed, count));
                 done += count;
             }
             seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
             ImageF picture = pictureOf(renderer, device);
             blackenNonFinite(picture);
             row.addTo(1.0 / options.seeds, seconds, compareImages(reference, picture));
+            result.picture = std::move(picture);
         }
     }
     return result;
@@ -137,5 +143,5 @@ Status benchConverge(const ConvergeBenchOptions& options)
         printJson(options, *opened, result);
     else
         print(options, result);
-    return Success{};
+    return options.output.empty() ? Success{} : writeExr(options.output, result.picture);
 }

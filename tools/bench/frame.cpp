@@ -1,49 +1,16 @@
 #include "tools/bench/frame.h"
 
 #include "runtime/renderer.h"
+#include "tools/bench/motion.h"
 #include "tools/bench/rays.h"
 
 #include <nlohmann/json.hpp>
 
 #include <chrono>
-#include <cmath>
-#include <numbers>
 #include <optional>
 
 namespace
 {
-constexpr float kDegree = std::numbers::pi_v<float> / 180;
-
-gpu::vec3 add(gpu::vec3 a, gpu::vec3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-gpu::vec3 scale(float s, gpu::vec3 v) { return {s * v.x, s * v.y, s * v.z}; }
-gpu::vec3 cross(gpu::vec3 a, gpu::vec3 b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
-float dot(gpu::vec3 a, gpu::vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-
-/// @param axis of unit length
-gpu::vec3 turned(gpu::vec3 v, gpu::vec3 axis, float radians)
-{
-    const float c = std::cos(radians), s = std::sin(radians);
-    return add(add(scale(c, v), scale(s, cross(axis, v))), scale(dot(axis, v) * (1 - c), axis));
-}
-
-float diagonal(const gpu::SceneInfo& info)
-{
-    const gpu::vec3 extent = add(info.bounds_max, scale(-1, info.bounds_min));
-    return std::sqrt(dot(extent, extent));
-}
-
-/// The given view swaying: 5 degrees to either side, the eye on a circle of 1/400 of the scene's diagonal; no two
-/// successive frames see the same.
-Camera movedCamera(const Camera& camera, const gpu::SceneInfo& info, uint32_t frame)
-{
-    const float phase = float(frame) * 3 * kDegree, radius = diagonal(info) / 400;
-    Camera moved = camera;
-    moved.forward = turned(camera.forward, camera.up, 5 * kDegree * std::sin(phase));
-    const gpu::vec3 right = cross(camera.forward, camera.up);
-    moved.position = add(camera.position, add(scale(radius * std::cos(phase), right), scale(radius * std::sin(phase), camera.up)));
-    return moved;
-}
-
 struct MovingLight
 {
     uint32_t index;
@@ -64,22 +31,6 @@ std::optional<MovingLight> chooseLight(std::span<const gpu::Light> lights)
     return chosen;
 }
 
-/// Directional: turned one degree a frame about the vertical, or about x where it shines straight down. Else moved on a
-/// circle of 1/200 of the scene's diagonal, three degrees a frame.
-gpu::Light movedLight(const gpu::Light& light, const gpu::SceneInfo& info, uint32_t frame)
-{
-    gpu::Light moved = light;
-    if (light.kind == gpu::kLightDirectional)
-    {
-        const gpu::vec3 axis = std::abs(light.p1.y) < 0.99f ? gpu::vec3{0, 1, 0} : gpu::vec3{1, 0, 0};
-        moved.p1 = turned(light.p1, axis, float(frame) * kDegree);
-        return moved;
-    }
-    const float phase = float(frame) * 3 * kDegree, radius = diagonal(info) / 200;
-    moved.p0 = add(light.p0, {radius * std::cos(phase), 0, radius * std::sin(phase)});
-    return moved;
-}
-
 struct Measurement
 {
     std::string motion;
@@ -97,23 +48,25 @@ double since(std::chrono::steady_clock::time_point start)
 Measurement measure(const OpenedPackage& opened, const FrameBenchOptions& options)
 {
     const Mode mode = options.mode == "gi" ? Mode::kGi : options.mode == "direct" ? Mode::kDirect : Mode::kReference;
-    const SceneGpu& scene = *opened.scene;
+    SceneGpu& scene = *opened.scene;
     Renderer renderer(*opened.device, scene, mode, options.width, options.height, options.settings);
     Recorder rec(*opened.device);
-    const auto light = options.still || options.still_light ? std::nullopt : chooseLight(opened.package.lights());
+    const bool camera_moves = options.moving == "both" || options.moving == "camera";
+    const bool lights_move = options.moving == "both" || options.moving == "lights";
+    const auto light = lights_move ? chooseLight(opened.package.lights()) : std::nullopt;
     Measurement result;
-    result.motion = options.still         ? "nothing moves"
-                    : options.still_light ? "the camera moves, lights stand still"
-                    : !light              ? "the camera moves; no light can, there is no directional, point or spot light"
-                    : light->light.kind == gpu::kLightDirectional ? "the camera and a directional light move"
-                                                                  : "the camera and a point or spot light move";
+    result.motion = fmt::format("{}; {}", camera_moves ? "the camera moves" : "the camera stands still",
+                                !lights_move ? "lights stand still"
+                                : !light     ? "no light can move, there is no directional, point or spot light"
+                                : light->light.kind == gpu::kLightDirectional ? "a directional light moves"
+                                                                              : "a point or spot light moves");
     const auto record = [&](uint32_t frame)
     {
         rec.begin(scene.descriptorSet());
         const auto scope = rec.scope("frame");
         if (light)
-            scene.setLight(rec, light->index, movedLight(light->light, scene.info(), frame));
-        renderer.record(rec, options.still ? opened.camera : movedCamera(opened.camera, scene.info(), frame), options.settings, 0);
+            scene.setLight(rec, light->index, movedLight(light->light, scene.info(), int32_t(frame)));
+        renderer.record(rec, camera_moves ? movedCamera(opened.camera, scene.info(), int32_t(frame)) : opened.camera, options.settings, 0);
         renderer.display(rec, options.settings, false);
     };
     for (uint32_t frame = 0; frame < options.warm_up + options.frames; ++frame)

@@ -8,8 +8,7 @@ struct FrameBenchOptions : BenchOptions
     std::string mode = "gi"; // gi, direct, reference
     uint32_t frames = 120;   // timed
     uint32_t warm_up = 8;    // before them
-    bool still = false;      // neither camera nor light moves
-    bool still_light = false;
+    std::string moving = "both"; // camera, lights, both, nothing
     Settings settings;
 };
 

@@ -57,8 +57,9 @@ void addPackageCommands(CLI::App& app, CommandLine& line)
     frame->add_option("--mode", line.frame.mode, "what to render")->check(CLI::IsMember({"gi", "direct", "reference"}))->capture_default_str();
     frame->add_option("--frames", line.frame.frames, "timed frames")->check(CLI::Range(1, 100000))->capture_default_str();
     frame->add_option("--warm-up", line.frame.warm_up, "frames before them")->check(CLI::Range(1, 1000))->capture_default_str();
-    frame->add_flag("--still", line.frame.still, "neither camera nor light moves");
-    frame->add_flag("--still-light", line.frame.still_light, "only the camera moves");
+    frame->add_option("--moving", line.frame.moving, "what moves from frame to frame")
+        ->check(CLI::IsMember({"both", "camera", "lights", "nothing"}))
+        ->capture_default_str();
 
     CLI::App* converge = addPackageCommand(app, "converge", "seconds and errors against a reference after 1, 2, 4, ... frames", line.converge);
     addSettings(converge, line);
@@ -66,6 +67,10 @@ void addPackageCommands(CLI::App& app, CommandLine& line)
     converge->add_option("--mode", line.converge.mode, "what to render")->check(CLI::IsMember({"gi", "reference"}))->capture_default_str();
     converge->add_option("--frames", line.converge.frames, "frames of a run")->check(CLI::Range(1, 1 << 20))->capture_default_str();
     converge->add_option("--seeds", line.converge.seeds, "runs to average over")->check(CLI::Range(1, 1000))->capture_default_str();
+    converge->add_option("--travel", line.converge.travel, "frames of a swaying camera before each run's first, which is as it comes to rest")
+        ->check(CLI::Range(0, 100000))
+        ->capture_default_str();
+    converge->add_option("--output", line.converge.output, "write the last picture (.exr)");
     converge->add_flag("--stages", line.converge.stages, "print the stages' median times too");
 
     CLI::App* lookup = addPackageCommand(app, "lookup", "the illumination cut's lookups against full kNN: time and error", line.lookup);
