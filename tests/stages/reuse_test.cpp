@@ -59,7 +59,7 @@ protected:
     struct Frame
     {
         Camera camera;
-        Settings settings = smallSettings();
+        Settings settings = reusing(true, true);
         uint32_t seed = 0;
         std::optional<gpu::Light> light; // that light 0 becomes before it
     };
@@ -173,7 +173,7 @@ TEST_F(Reuse, LightChangeAloneStartsThePictureAnew)
 {
     gpu::Light brighter = pointLight();
     brighter.emission = 4.0f * brighter.emission;
-    expectFresh({{kCamera}, {kCamera}, {kCamera, smallSettings(), 0, brighter}}, "a light that changes over a standing camera");
+    expectFresh({{kCamera}, {kCamera}, {kCamera, reusing(true, true), 0, brighter}}, "a light that changes over a standing camera");
 }
 
 TEST_F(Reuse, KeepsNearlyAllSamplesOverATinyStep)
@@ -295,7 +295,7 @@ TEST_F(ReuseStage, TenureReachesAsFarAsTheClusterAndEndsOneByOne)
     EXPECT_EQ(kept_, 0u);
     const auto held = tenures(samples.size());
     const auto quadtree = stage_->quadtree();
-    const auto owners = contents<gpu::uvec2>(quadtree.owners, 1u << (2 * quadtree.levels));
+    const auto owners = contents<gpu::uvec2>(quadtree.owners, uint32_t(quadtree.owners.size() / sizeof(gpu::uvec2)));
     const auto ownerOf = [&](uint32_t pixel) { return owners[zOrder(pixel % kWidth, pixel / kWidth)].x; };
     std::map<uint32_t, size_t> sample_of; // by cluster
     for (size_t i = 0; i < samples.size(); ++i)
@@ -395,7 +395,7 @@ TEST_F(ReuseStage, EveryPointHasTheNearestOwner)
     const auto old = lit(record(*before_, 0));
     const auto samples = record(*now_, 1);
     const auto quadtree = stage_->quadtree();
-    const auto owners = contents<gpu::uvec2>(quadtree.owners, 1u << (2 * quadtree.levels));
+    const auto owners = contents<gpu::uvec2>(quadtree.owners, uint32_t(quadtree.owners.size() / sizeof(gpu::uvec2)));
     std::set<uint32_t> clusters;
     uint32_t kept_points = 0;
     for (uint32_t pixel = 0; pixel < kWidth * kHeight; ++pixel)
