@@ -141,6 +141,27 @@ double totalPower(const std::vector<Candidate>& candidates)
     return std::accumulate(candidates.begin(), candidates.end(), 0.0,
                            [](double sum, const Candidate& c) { return sum + c.power; });
 }
+bool isBeam(const Candidate& c) { return c.light.kind == gpu::kLightDirectional || c.light.kind == gpu::kLightEnvironment; }
+
+/// What each light's share of the samples goes by: its power, but beams beside other lights get half of all at most. The
+/// power of a beam is what falls on a disc as wide as the scene; indoors nearly all of that is on the roof, and the lamps
+/// that light the room would get next to no samples.
+std::vector<double> sampleShares(const std::vector<Candidate>& candidates)
+{
+    constexpr double kMostBeams = 0.5;
+    const double total = totalPower(candidates);
+    double beams = 0;
+    for (const Candidate& c : candidates)
+        beams += isBeam(c) ? c.power / total : 0;
+    const bool capped = beams > kMostBeams && beams < 1;
+    std::vector<double> shares;
+    for (const Candidate& c : candidates)
+    {
+        const double group = isBeam(c) ? kMostBeams / beams : (1 - kMostBeams) / (1 - beams);
+        shares.push_back(c.power / total * (capped ? group : 1));
+    }
+    return shares;
+}
 } // namespace
 
 LightTables buildLights(const SceneData& scene)
@@ -152,16 +173,15 @@ LightTables buildLights(const SceneData& scene)
     std::vector<Candidate> candidates = collect(scene);
     const double least = totalPower(candidates) * kLeastShare;
     std::erase_if(candidates, [&](const Candidate& c) { return !(c.power > least); });
-    const double total = totalPower(candidates);
-    tables.total_power = float(total);
+    tables.total_power = float(totalPower(candidates));
     if (candidates.empty())
         return tables;
 
-    std::vector<double> powers;
-    for (Candidate& c : candidates)
+    const std::vector<double> shares = sampleShares(candidates);
+    for (size_t i = 0; i < candidates.size(); ++i)
     {
-        c.light.pmf = float(c.power / total);
-        powers.push_back(c.power);
+        Candidate& c = candidates[i];
+        c.light.pmf = float(shares[i]);
         if (c.light.triangle != gpu::kNone)
         {
             tables.triangle_lights[c.light.triangle] = uint32_t(tables.lights.size());
@@ -169,6 +189,6 @@ LightTables buildLights(const SceneData& scene)
         }
         tables.lights.push_back(c.light);
     }
-    tables.aliases = buildAliasTable(powers);
+    tables.aliases = buildAliasTable(shares);
     return tables;
 }

@@ -146,7 +146,7 @@ struct Light
     vec3 p1;       // spot, directional: unit vector, the way the light travels. triangle: vertex 1
     uint triangle; // triangle: index into Triangles, else kNone
     vec3 p2;       // spot: (cone_scale, cone_offset, 0), see below. triangle: vertex 2
-    float pmf;     // probability of being picked by the alias table; power / total power
+    float pmf;     // probability of being picked by the alias table; about its share of the power
     vec3 emission; // point, spot: W/sr. directional: W/m^2. triangle: W/(m^2 sr) before texture and alpha. environment: factor
     uint material; // triangle whose emission varies, by an emissive texture or alpha: its material, else kNone
 };

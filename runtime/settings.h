@@ -28,9 +28,9 @@ struct Settings
     float cut_difference = 0.2f;
     uint32_t samples_mode = 2; // SamplesMode
     uint32_t sample_count = 4096;
-    uint32_t sample_iterations = 3;
+    uint32_t sample_iterations = 2;
     float sample_alpha = 10;
-    float sample_reach = 5;
+    float sample_reach = 4;
     uint32_t gather_rays = 256;
     uint32_t glossy_mode = 1; // GlossyMode
     uint32_t caustic_photons = 100000; // paths

@@ -21,7 +21,7 @@ layout(set = 1, binding = 6, scalar) writeonly buffer Tenures { SampleTenure ten
 layout(set = 1, binding = 7, scalar) readonly buffer KeptSize { QueueSize kept_size; }; // samples before these
 
 // A round cluster of radius rho has a mean distance of 2/3 rho; its neighbours lie at 2 rho, the next ones at 3.5 and 4 rho.
-// With a reach of 5, that is 3.3 rho, every place shares about ten samples.
+// With a reach of 4, that is 2.7 rho, every place shares about seven samples.
 
 void main()
 {

@@ -204,6 +204,21 @@ TEST(BuildLights, AliasTableDrawsEachLightWithItsShareOfThePower)
     }
 }
 
+TEST(BuildLights, ASunLeavesHalfOfTheSamplesToLamps)
+{
+    SceneData scene = withPunctual({.kind = gpu::kLightDirectional, .intensity = {1000, 1000, 1000}});
+    EXPECT_EQ(buildLights(scene).lights.at(0).pmf, 1); // alone it has all
+    scene.lights.push_back({.kind = gpu::kLightPoint, .intensity = {1, 1, 1}});
+    scene.lights.push_back({.kind = gpu::kLightPoint, .intensity = {3, 3, 3}});
+    const LightTables tables = buildLights(scene);
+    ASSERT_EQ(tables.lights.size(), 3u);
+    EXPECT_NEAR(tables.lights[0].pmf, 0.5, 1e-6);
+    EXPECT_NEAR(tables.lights[1].pmf, 0.125, 1e-6);
+    EXPECT_NEAR(tables.lights[2].pmf, 0.375, 1e-6);
+    scene.lights[0].intensity = {0.001f, 0.001f, 0.001f}; // a faint one has its share of the power
+    EXPECT_LT(buildLights(scene).lights.at(0).pmf, 0.01);
+}
+
 TEST(CausticTargets, EnclosesSmoothMetalAndSolidGlassOnly)
 {
     SceneData scene = darkScene();
