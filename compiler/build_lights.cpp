@@ -7,6 +7,7 @@
 #include "compiler/vector_math.h"
 
 #include <numbers>
+#include <algorithm>
 #include <numeric>
 
 namespace
@@ -150,14 +151,14 @@ std::vector<double> sampleShares(const std::vector<Candidate>& candidates)
 {
     constexpr double kMostBeams = 0.5;
     const double total = totalPower(candidates);
-    double beams = 0;
+    double beams = 0, lamps = 0;
     for (const Candidate& c : candidates)
-        beams += isBeam(c) ? c.power / total : 0;
-    const bool capped = beams > kMostBeams && beams < 1;
+        (isBeam(c) ? beams : lamps) += c.power / total;
+    const bool capped = beams > kMostBeams && lamps > 0;
     std::vector<double> shares;
     for (const Candidate& c : candidates)
     {
-        const double group = isBeam(c) ? kMostBeams / beams : (1 - kMostBeams) / (1 - beams);
+        const double group = isBeam(c) ? kMostBeams / beams : (1 - kMostBeams) / lamps;
         shares.push_back(c.power / total * (capped ? group : 1));
     }
     return shares;

@@ -13,8 +13,8 @@ constexpr float kGuideReach = 0.05f; // of the scene's diagonal: how far from th
 
 constexpr float kSearchRadius = 0.1f; // of the scene's diagonal: how far the nearest sample or cut node may be
 
-/// Progressive photon mapping: r_n^2 / r_0^2 = prod (i + 2/3) / (i + 1) over the n frames before (Hachisuka et al. 2008;
-/// Knaus & Zwicker 2011), so that noise and bias vanish together.
+/// Progressive photon mapping: r_n^2 / r_0^2 = prod (i + 2/3) / (i + 1) over the n frames before (Hachisuka et al.
+/// 2008; Knaus & Zwicker 2011), so that noise and bias vanish together.
 float shrunkRadius(float radius, uint32_t frame)
 {
     constexpr double kAlpha = 2.0 / 3.0;
@@ -29,9 +29,9 @@ struct GlobalIllumination::Frame
     const RayStage& rays;
     const gpu::CameraParams& camera;
     const Settings& settings;
-    const Buffer& points;   // gpu::ShadingPoint[pixel_count]
+    const Buffer& points;         // gpu::ShadingPoint[pixel_count]
     const Buffer& diffuse_points; // gpu::DiffusePoint[pixel_count]
-    const Buffer& radiance; // vec3[pixel_count]
+    const Buffer& radiance;       // vec3[pixel_count]
     uint32_t pixel_count;
     uint32_t index; // in a standing picture
     uint32_t seed;  // of this frame alone
@@ -47,7 +47,10 @@ struct GlobalIllumination::Frame
 Status GlobalIllumination::checkCounts(uint64_t range, const Settings& settings)
 {
     const auto tooLarge = [&](const char* names, uint64_t most) -> Status
-    { return Error{ExitCode::kDevice, fmt::format("{} is more than this device's buffers hold, {}; lower one of them", names, most)}; };
+    {
+        return Error{ExitCode::kDevice,
+                     fmt::format("{} is more than this device's buffers hold, {}; lower one of them", names, most)};
+    };
     const uint64_t most_photons = range / (2 * sizeof(gpu::CutNode)), most_rays = range / sizeof(gpu::Ray);
     if (uint64_t(settings.photon_count) * settings.photon_bounces > most_photons)
         return tooLarge("photons.count x photons.bounces", most_photons);
@@ -58,17 +61,19 @@ Status GlobalIllumination::checkCounts(uint64_t range, const Settings& settings)
     return Success{};
 }
 
-GlobalIllumination::GlobalIllumination(const Device& device, const SceneGpu& scene, const Settings& settings, uint32_t width,
-                                       uint32_t height)
-    : scene_(scene), width_(width), height_(height), diagonal_(0), longest_side_(0), has_specular_(scene.hasFeature(gpu::kFeatureSpecular)),
-      reflects_roughly_(scene.reflectsRoughly()),
+GlobalIllumination::GlobalIllumination(const Device& device, const SceneGpu& scene, const Settings& settings,
+                                       uint32_t width, uint32_t height)
+    : scene_(scene), width_(width), height_(height), diagonal_(0), longest_side_(0),
+      has_specular_(scene.hasFeature(gpu::kFeatureSpecular)), reflects_roughly_(scene.reflectsRoughly()),
       has_caustic_targets_(scene.info().caustic_target_count > 0),
-      has_mirrors_(has_caustic_targets_ || scene.hasFeature(gpu::kFeatureTransmission | gpu::kFeatureThin)), primary_(device, scene, width * height), direct_(device, scene, width * height),
+      has_mirrors_(has_caustic_targets_ || scene.hasFeature(gpu::kFeatureTransmission | gpu::kFeatureThin)),
+      primary_(device, scene, width * height), direct_(device, scene, width * height),
       photons_(device, scene, PhotonKind::kGlobal, settings.photon_count, settings.photon_bounces),
       caustic_photons_(device, scene, PhotonKind::kCaustic, settings.caustic_photons, kCausticBounces),
       photon_tree_(device, "photon_tree", settings.photon_count * settings.photon_bounces),
       caustic_tree_(device, "caustic_tree", settings.caustic_photons * kCausticBounces),
-      cut_(device, scene, settings.photon_count * settings.photon_bounces), samples_(device, scene, width, height, settings.sample_count),
+      cut_(device, scene, settings.photon_count * settings.photon_bounces),
+      samples_(device, scene, width, height, settings.sample_count),
       gather_(device, scene, settings.sample_count, settings.gather_rays), interpolate_(device, settings.sample_count),
       glossy_(device, scene, width * height), caustics_(device, scene), views_(device, scene, width * height)
 {
@@ -81,8 +86,8 @@ GlobalIllumination::GlobalIllumination(const Device& device, const SceneGpu& sce
         guide_.emplace(device, scene, settings.photon_count);
 }
 
-const Buffer& GlobalIllumination::record(Recorder& rec, const RayStage& rays, const gpu::CameraParams& camera, const Settings& settings,
-                                         bool moved)
+const Buffer& GlobalIllumination::record(Recorder& rec, const RayStage& rays, const gpu::CameraParams& camera,
+                                         const Settings& settings, bool moved)
 {
     const auto primary = primary_.record(rec, rays, {.camera = camera, .specular_depth = settings.specular_depth});
     const Frame frame{.rec = rec,
@@ -120,8 +125,8 @@ const Buffer& GlobalIllumination::record(Recorder& rec, const RayStage& rays, co
     return frame.radiance;
 }
 
-/// Delta events that photons and gathering rays follow: each costs a pass over a mostly empty queue. Without mirrors and
-/// glass there are only smooth layers over something diffuse, whose third reflections are too faint to matter.
+/// Delta events that photons and gathering rays follow: each costs rays a pass over a mostly empty queue. Without mirrors
+/// and glass there are only smooth layers over something diffuse, whose third reflections are too faint to matter.
 uint32_t GlobalIllumination::chainDepth(const Settings& settings) const
 {
     return has_mirrors_ ? settings.specular_depth : std::min(settings.specular_depth, 2u);
@@ -162,12 +167,13 @@ PhotonStage::Output GlobalIllumination::emitPhotons(const Frame& frame)
 void GlobalIllumination::rehearse(const Frame& frame)
 {
     guide_->reset(frame.rec);
-    gather_.look(frame.rec, frame.rays, samples_.record(frame.rec, frame.rays, samplesInput(frame, 0)), gatherInput(frame), *guide_);
+    gather_.look(frame.rec, frame.rays, samples_.record(frame.rec, frame.rays, samplesInput(frame, 0)),
+                 gatherInput(frame), *guide_);
     emitPhotons(frame);
 }
 
-/// Whether the map that `made` tells of is the one that `in` would give; else notes that it is about to be made. A standing
-/// picture asks for other photons in every frame.
+/// Whether the map that `made` tells of is the one that `in` would give; else notes that it is about to be made. A
+/// standing picture asks for other photons in every frame.
 bool GlobalIllumination::isThere(const Frame& frame, std::optional<MapOrigin>& made, const PhotonStage::Input& in) const
 {
     const MapOrigin asked{.lights = scene_.lightsVersion(), .in = in};
@@ -286,15 +292,16 @@ void GlobalIllumination::recordIndirect(const Frame& frame, const InterpolateSta
                          .white = frame.settings.view == gpu::kViewIrradiance});
 }
 
-/// Rough reflection is from the samples' harmonics in the first frame of a picture, with little noise; harmonics of order 4
-/// cannot tell everything, so that the frames after it send rays.
+/// Rough reflection is from the samples' harmonics in the first frame of a picture, with little noise; harmonics of
+/// order 4 cannot tell everything, so that the frames after it send rays.
 bool GlobalIllumination::reflectsByHarmonics(const Frame& frame) const
 {
     return reflects_roughly_ && GlossyMode(frame.settings.glossy_mode) == GlossyMode::kHarmonics && frame.index == 0 &&
            frame.shows(gpu::kTermGlossy);
 }
 
-void GlobalIllumination::recordGlossy(const Frame& frame, const CutStage::Output& cut, const InterpolateStage::Sorted* samples) const
+void GlobalIllumination::recordGlossy(const Frame& frame, const CutStage::Output& cut,
+                                      const InterpolateStage::Sorted* samples) const
 {
     const auto scope = frame.rec.scope("glossy");
     const GlossyStage::Input in{.points = frame.points,
@@ -343,14 +350,22 @@ void GlobalIllumination::recordView(const Frame& frame) const
     switch (in.view)
     {
     case gpu::kViewNormals:
-    case gpu::kViewPositions: return views_.recordPoints(frame.rec, in);
-    case gpu::kViewSamples: return views_.recordSamples(frame.rec, in, samples_.output());
+    case gpu::kViewPositions:
+        return views_.recordPoints(frame.rec, in);
+    case gpu::kViewSamples:
+        return views_.recordSamples(frame.rec, in, samples_.output());
     case gpu::kViewClusters:
-    case gpu::kViewBudget: return views_.recordQuadtree(frame.rec, in, samples_.output(), samples_.quadtree());
-    case gpu::kViewPhotons: return views_.recordPhotons(frame.rec, in, photon_tree_.output());
-    case gpu::kViewTree: return views_.recordTree(frame.rec, in, photon_tree_.output());
-    case gpu::kViewCut: return views_.recordCut(frame.rec, in, cut_.output());
-    case gpu::kViewNonFinite: return views_.recordNonFinite(frame.rec, in);
-    default: return; // kViewIrradiance: interpolation has left it
+    case gpu::kViewBudget:
+        return views_.recordQuadtree(frame.rec, in, samples_.output(), samples_.quadtree());
+    case gpu::kViewPhotons:
+        return views_.recordPhotons(frame.rec, in, photon_tree_.output());
+    case gpu::kViewTree:
+        return views_.recordTree(frame.rec, in, photon_tree_.output());
+    case gpu::kViewCut:
+        return views_.recordCut(frame.rec, in, cut_.output());
+    case gpu::kViewNonFinite:
+        return views_.recordNonFinite(frame.rec, in);
+    default:
+        return; // kViewIrradiance: interpolation has left it
     }
 }

@@ -19,9 +19,10 @@ public:
     /// @return kDevice naming the settings whose product needs a larger buffer than `range` bytes
     static Status checkCounts(uint64_t range, const Settings& settings);
 
-    /// Allocates for pictures of width x height pixels and for the counts in `settings`; later settings may ask for fewer
-    /// photons, samples and rays, not for more.
-    GlobalIllumination(const Device& device, const SceneGpu& scene, const Settings& settings, uint32_t width, uint32_t height);
+    /// Allocates for pictures of width x height pixels and for the counts in `settings`; later settings may ask for
+    /// fewer photons, samples and rays, not for more.
+    GlobalIllumination(const Device& device, const SceneGpu& scene, const Settings& settings, uint32_t width,
+                       uint32_t height);
 
     /// Records one frame: one sample a pixel, vec3[width * height]; of settings.term alone where that is not all, and
     /// the colours of settings.view where that is one, whatever the term.
@@ -47,7 +48,8 @@ private:
     SamplesStage::Input samplesInput(const Frame& frame, uint32_t age) const;
     GatherStage::Input gatherInput(const Frame& frame) const;
     bool reflectsByHarmonics(const Frame& frame) const;
-    InterpolateStage::Sorted recordGather(const Frame& frame, const PhotonTreeStage::Output& map, const CutStage::Output& cut);
+    InterpolateStage::Sorted recordGather(const Frame& frame, const PhotonTreeStage::Output& map,
+                                          const CutStage::Output& cut);
     void recordIndirect(const Frame& frame, const InterpolateStage::Sorted& samples) const;
     void recordGlossy(const Frame& frame, const CutStage::Output& cut, const InterpolateStage::Sorted* samples) const;
     void recordCaustics(const Frame& frame);

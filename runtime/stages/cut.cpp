@@ -2,26 +2,33 @@
 
 CutStage::CutStage(const Device& device, const SceneGpu& scene, uint32_t max_photons)
     : summarise_(device.kernel("cut/summarise", climbConstants(device))), level_mean_(device.kernel("cut/level_mean")),
-      threshold_kernel_(device.kernel("cut/threshold")), coarse_(device.kernel("cut/coarse", climbConstants(device))), select_(device.kernel("cut/select")),
-      refine_(device.kernel("cut/refine")), collect_(device.kernel("cut/collect")), reorder_(device.kernel("cut/reorder")), finest_(device.kernel("cut/finest")), probe_(device.kernel("cut/probe")),
-      cover_(device.kernel("cut/cover", scene.constants())),
-      compaction_(device, "cut.compaction", 2 * max_photons), tree_(device, "cut.tree", max_photons),
-      sums_(device.array<gpu::PhotonSums>("cut.sums", max_photons)), arrivals_(device.array<uint32_t>("cut.arrivals", max_photons)),
+      threshold_kernel_(device.kernel("cut/threshold")), coarse_(device.kernel("cut/coarse", climbConstants(device))),
+      select_(device.kernel("cut/select")), refine_(device.kernel("cut/refine")),
+      collect_(device.kernel("cut/collect")), reorder_(device.kernel("cut/reorder")),
+      finest_(device.kernel("cut/finest")), probe_(device.kernel("cut/probe")),
+      cover_(device.kernel("cut/cover", scene.constants())), compaction_(device, "cut.compaction", 2 * max_photons),
+      tree_(device, "cut.tree", max_photons), sums_(device.array<gpu::PhotonSums>("cut.sums", max_photons)),
+      arrivals_(device.array<uint32_t>("cut.arrivals", max_photons)),
       partials_(device.array<gpu::PartialMean>("cut.partials", gpu::kPartialMeans)),
-      threshold_(device.array<gpu::CutThreshold>("cut.threshold", 1)), id_count_(device.array<gpu::QueueSize>("cut.id_count", 1)),
-      divided_(device.array<uint32_t>("cut.divided", max_photons)), work_(device.array<uint32_t>("cut.work", max_photons)),
+      threshold_(device.array<gpu::CutThreshold>("cut.threshold", 1)),
+      id_count_(device.array<gpu::QueueSize>("cut.id_count", 1)),
+      divided_(device.array<uint32_t>("cut.divided", max_photons)),
+      work_(device.array<uint32_t>("cut.work", max_photons)),
       next_work_(device.array<uint32_t>("cut.next_work", max_photons)),
-      work_size_(device.array<gpu::QueueSize>("cut.work_size", 1)), next_work_size_(device.array<gpu::QueueSize>("cut.next_work_size", 1)),
+      work_size_(device.array<gpu::QueueSize>("cut.work_size", 1)),
+      next_work_size_(device.array<gpu::QueueSize>("cut.next_work_size", 1)),
       members_(device.array<uint32_t>("cut.members", 2 * uint64_t(max_photons))),
-      finals_(device.array<gpu::CutNode>("cut.finals", 2 * uint64_t(max_photons))), size_(device.array<gpu::QueueSize>("cut.size", 1)),
-      ids_(device.array<uint32_t>("cut.ids", max_photons)), spheres_(device.array<gpu::vec4>("cut.spheres", max_photons)),
+      finals_(device.array<gpu::CutNode>("cut.finals", 2 * uint64_t(max_photons))),
+      size_(device.array<gpu::QueueSize>("cut.size", 1)), ids_(device.array<uint32_t>("cut.ids", max_photons)),
+      spheres_(device.array<gpu::vec4>("cut.spheres", max_photons)),
       nodes_(device.texelArray<gpu::CutNode>("cut.nodes", max_photons)),
       probes_(device, "cut.probes", gpu::kCutProbeCapacity),
       hits_(device.texelArray<gpu::Hit>("cut.hits", gpu::kCutProbeCapacity))
 {
 }
 
-CutStage::Output CutStage::record(Recorder& rec, const RayStage& rays, const PhotonTreeStage::Output& map, const Input& in) const
+CutStage::Output CutStage::record(Recorder& rec, const RayStage& rays, const PhotonTreeStage::Output& map,
+                                  const Input& in) const
 {
     const Buffer& tree_nodes = map.tree.nodes();
     const Buffer& leaf_parents = map.tree.leafParents();
@@ -34,18 +41,31 @@ CutStage::Output CutStage::record(Recorder& rec, const RayStage& rays, const Pho
                           .spread = gpu::kCutSpread * in.shrink};
     rec.clear(arrivals_);
     rec.runIndirect(summarise_, map.size, 0, NoParams{},
-                    {{"Size", map.size}, {"TreeNodes", tree_nodes}, {"Photons", map.photons}, {"LeafParents", leaf_parents},
-                     {"NodeParents", node_parents}, {"Sums", sums_}, {"Arrivals", arrivals_}});
+                    {{"Size", map.size},
+                     {"TreeNodes", tree_nodes},
+                     {"Photons", map.photons},
+                     {"LeafParents", leaf_parents},
+                     {"NodeParents", node_parents},
+                     {"Sums", sums_},
+                     {"Arrivals", arrivals_}});
     rec.run(level_mean_, gpu::kPartialMeans * gpu::kPartialGroupSize, NoParams{},
-            {{"Size", map.size}, {"TreeNodes", tree_nodes}, {"NodeParents", node_parents}, {"Sums", sums_},
+            {{"Size", map.size},
+             {"TreeNodes", tree_nodes},
+             {"NodeParents", node_parents},
+             {"Sums", sums_},
              {"Partials", partials_}});
     rec.run(threshold_kernel_, 1, NoParams{},
             {{"Size", map.size}, {"Partials", partials_}, {"Threshold", threshold_}, {"Ids", id_count_}});
     rec.clear(arrivals_);
     rec.clear(divided_);
     rec.runIndirect(coarse_, map.size, 0, params,
-                    {{"Size", map.size}, {"TreeNodes", tree_nodes}, {"LeafParents", leaf_parents},
-                     {"NodeParents", node_parents}, {"Sums", sums_}, {"Threshold", threshold_}, {"Divided", divided_},
+                    {{"Size", map.size},
+                     {"TreeNodes", tree_nodes},
+                     {"LeafParents", leaf_parents},
+                     {"NodeParents", node_parents},
+                     {"Sums", sums_},
+                     {"Threshold", threshold_},
+                     {"Divided", divided_},
                      {"Arrivals", arrivals_}});
 
     const Buffer* work = &work_;
@@ -54,28 +74,49 @@ CutStage::Output CutStage::record(Recorder& rec, const RayStage& rays, const Pho
     const Buffer* next_size = &next_work_size_;
     rec.clear(*work_size);
     rec.runIndirect(select_, id_count_, 0, NoParams{},
-                    {{"Size", map.size}, {"Ids", id_count_}, {"LeafParents", leaf_parents}, {"NodeParents", node_parents},
-                     {"Divided", divided_}, {"WorkSize", *work_size}, {"Work", *work}});
+                    {{"Size", map.size},
+                     {"Ids", id_count_},
+                     {"LeafParents", leaf_parents},
+                     {"NodeParents", node_parents},
+                     {"Divided", divided_},
+                     {"WorkSize", *work_size},
+                     {"Work", *work}});
     rays.close(rec, *work_size);
     rec.clear(members_);
     if (in.mode == CutMode::kLeaves)
         rec.runIndirect(finest_, *work_size, 0, params,
-                        {{"Size", map.size}, {"TreeNodes", tree_nodes}, {"Photons", map.photons}, {"LeafParents", leaf_parents},
-                         {"NodeParents", node_parents}, {"Sums", sums_}, {"WorkSize", *work_size}, {"Work", *work},
-                         {"Members", members_}, {"Finals", finals_}});
+                        {{"Size", map.size},
+                         {"TreeNodes", tree_nodes},
+                         {"Photons", map.photons},
+                         {"LeafParents", leaf_parents},
+                         {"NodeParents", node_parents},
+                         {"Sums", sums_},
+                         {"WorkSize", *work_size},
+                         {"Work", *work},
+                         {"Members", members_},
+                         {"Finals", finals_}});
     for (uint32_t round = 0; in.mode != CutMode::kLeaves && round <= in.iterations; ++round)
     {
         params.last = round == in.iterations;
         rec.clear(*next_size);
         rec.runIndirect(refine_, *work_size, 0, params,
-                        {{"Size", map.size}, {"TreeNodes", tree_nodes}, {"Photons", map.photons}, {"Sums", sums_}, {"WorkSize", *work_size},
-                         {"Work", *work}, {"NextSize", *next_size}, {"Next", *next}, {"Members", members_}, {"Finals", finals_}});
+                        {{"Size", map.size},
+                         {"TreeNodes", tree_nodes},
+                         {"Photons", map.photons},
+                         {"Sums", sums_},
+                         {"WorkSize", *work_size},
+                         {"Work", *work},
+                         {"NextSize", *next_size},
+                         {"Next", *next},
+                         {"Members", members_},
+                         {"Finals", finals_}});
         rays.close(rec, *next_size);
         std::swap(work, next);
         std::swap(work_size, next_size);
     }
     compaction_.record(rec, members_, ids_, size_, id_count_);
-    rec.runIndirect(collect_, size_, 0, NoParams{}, {{"Size", size_}, {"Ids", ids_}, {"Finals", finals_}, {"Spheres", spheres_}});
+    rec.runIndirect(collect_, size_, 0, NoParams{},
+                    {{"Size", size_}, {"Ids", ids_}, {"Finals", finals_}, {"Spheres", spheres_}});
     tree_.record(rec, spheres_, size_);
     rec.runIndirect(reorder_, size_, 0, NoParams{},
                     {{"Size", size_}, {"Ids", ids_}, {"Order", tree_.order()}, {"Finals", finals_}, {"Nodes", nodes_}});
@@ -87,7 +128,9 @@ CutStage::Output CutStage::record(Recorder& rec, const RayStage& rays, const Pho
 void CutStage::recordProbes(Recorder& rec, const RayStage& rays, const Input& in) const
 {
     const gpu::ProbeParams params{.ray_count = in.probes, .seed = in.seed};
-    rec.runIndirect(probe_, size_, 0, params, {{"Size", size_}, {"Nodes", nodes_}, {"Queue", probes_.size}, {"Rays", probes_.rays}});
+    rec.runIndirect(probe_, size_, 0, params,
+                    {{"Size", size_}, {"Nodes", nodes_}, {"Queue", probes_.size}, {"Rays", probes_.rays}});
     rays.closest(rec, probes_, hits_, in.seed);
-    rec.runIndirect(cover_, size_, 0, params, {{"Size", size_}, {"Rays", probes_.rays}, {"Hits", hits_}, {"Nodes", nodes_}});
+    rec.runIndirect(cover_, size_, 0, params,
+                    {{"Size", size_}, {"Rays", probes_.rays}, {"Hits", hits_}, {"Nodes", nodes_}});
 }

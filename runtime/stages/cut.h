@@ -3,7 +3,13 @@
 #include "runtime/stages/photon_tree.h"
 #include "shaders/cut/cut.h"
 
-enum class CutMode : uint32_t { kKnn = gpu::kCutKnn, kNearest = gpu::kCutNearest, kLeaves = gpu::kCutLeaves, kRefined = gpu::kCutRefined };
+enum class CutMode : uint32_t
+{
+    kKnn = gpu::kCutKnn,
+    kNearest = gpu::kCutNearest,
+    kLeaves = gpu::kCutLeaves,
+    kRefined = gpu::kCutRefined
+};
 
 class CutStage
 {
@@ -14,12 +20,12 @@ public:
     struct Input
     {
         CutMode mode;
-        uint32_t iterations;  // of refinement
-        float difference;     // Delta_E, relative
+        uint32_t iterations;   // of refinement
+        float difference;      // Delta_E, relative
         uint32_t photon_count; // k of density estimation
-        float radius;         // metres, of density estimation at most
-        float shrink;         // of the nodes' supports, <= 1: in a standing picture they may be as noisy as they are sharp
-        uint32_t probes;      // rays that a node feels for its surface with; 0: it is taken for a plane
+        float radius;          // metres, of density estimation at most
+        float shrink;    // of the nodes' supports, <= 1: in a standing picture they may be as noisy as they are sharp
+        uint32_t probes; // rays that a node feels for its surface with; 0: it is taken for a plane
         uint32_t seed;
         bool operator==(const Input&) const = default; // equal input over one map gives one cut
     };
@@ -36,10 +42,12 @@ public:
 private:
     void recordProbes(Recorder& rec, const RayStage& rays, const Input& in) const;
 
-    Kernel summarise_, level_mean_, threshold_kernel_, coarse_, select_, refine_, collect_, reorder_, finest_, probe_, cover_;
+    Kernel summarise_, level_mean_, threshold_kernel_, coarse_, select_, refine_, collect_, reorder_, finest_, probe_,
+        cover_;
     Compaction compaction_;
     Tree tree_;
-    Buffer sums_, arrivals_, partials_, threshold_, id_count_, divided_, work_, next_work_, work_size_, next_work_size_, members_, finals_;
+    Buffer sums_, arrivals_, partials_, threshold_, id_count_, divided_, work_, next_work_, work_size_, next_work_size_,
+        members_, finals_;
     Buffer size_, ids_, spheres_, nodes_;
     RayQueue probes_;
     Buffer hits_;

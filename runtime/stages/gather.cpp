@@ -1,36 +1,46 @@
 #include "runtime/stages/gather.h"
 
-GatherStage::GatherStage(const Device& device, const SceneGpu& scene, uint32_t max_samples, uint32_t max_rays_per_sample)
-    : max_samples_(max_samples), has_specular_(scene.hasFeature(gpu::kFeatureSpecular)), generate_(device.kernel("gather/generate")),
-      link_(device.kernel("gather/link", scene.constants())), link_knn_(device.kernel("gather/link_knn", scene.constants())),
-      sum_(device.kernel("gather/sum")), carry_(device.kernel("gather/carry")), project_(device.kernel("gather/project", scene.constants())), queue_(device, "gather.queue", max_samples * max_rays_per_sample),
+GatherStage::GatherStage(const Device& device, const SceneGpu& scene, uint32_t max_samples,
+                         uint32_t max_rays_per_sample)
+    : max_samples_(max_samples), has_specular_(scene.hasFeature(gpu::kFeatureSpecular)),
+      generate_(device.kernel("gather/generate")), link_(device.kernel("gather/link", scene.constants())),
+      link_knn_(device.kernel("gather/link_knn", scene.constants())), sum_(device.kernel("gather/sum")),
+      carry_(device.kernel("gather/carry")), project_(device.kernel("gather/project", scene.constants())),
+      queue_(device, "gather.queue", max_samples * max_rays_per_sample),
       next_queue_(device, "gather.next_queue", max_samples * max_rays_per_sample),
       hits_(device.texelArray<gpu::Hit>("gather.hits", uint64_t(max_samples) * max_rays_per_sample)),
       states_(device.array<gpu::GatherState>("gather.states", uint64_t(max_samples) * max_rays_per_sample)),
       gathered_(device.array<gpu::Gathered>("gather.gathered", uint64_t(max_samples) * max_rays_per_sample)),
-      harmonics_(device.texelArray<gpu::SampleHarmonics>("gather.harmonics", scene.reflectsRoughly() ? max_samples : 1)),
-      old_harmonics_(device.array<gpu::SampleHarmonics>("gather.old_harmonics", scene.reflectsRoughly() ? max_samples : 1))
+      harmonics_(
+          device.texelArray<gpu::SampleHarmonics>("gather.harmonics", scene.reflectsRoughly() ? max_samples : 1)),
+      old_harmonics_(
+          device.array<gpu::SampleHarmonics>("gather.old_harmonics", scene.reflectsRoughly() ? max_samples : 1))
 {
 }
 
-void GatherStage::look(Recorder& rec, const RayStage& rays, const SamplesStage::Output& samples, const gpu::GatherParams& params,
-                       GuideStage* guide) const
+void GatherStage::look(Recorder& rec, const RayStage& rays, const SamplesStage::Output& samples,
+                       const gpu::GatherParams& params, GuideStage* guide) const
 {
     rec.run(generate_, max_samples_ * params.ray_count, params,
-            {{"Size", samples.size}, {"Samples", samples.samples}, {"Queue", queue_.size}, {"Rays", queue_.rays},
+            {{"Size", samples.size},
+             {"Samples", samples.samples},
+             {"Queue", queue_.size},
+             {"Rays", queue_.rays},
              {"KeptSize", samples.kept}});
     rays.closest(rec, queue_, hits_, traceSeed(params.seed, 0, 0));
     if (guide)
         guide->mark(rec, queue_, max_samples_ * params.ray_count, hits_);
 }
 
-void GatherStage::look(Recorder& rec, const RayStage& rays, const SamplesStage::Output& samples, const Input& in, GuideStage& guide) const
+void GatherStage::look(Recorder& rec, const RayStage& rays, const SamplesStage::Output& samples, const Input& in,
+                       GuideStage& guide) const
 {
     look(rec, rays, samples, gpu::GatherParams{.ray_count = in.ray_count, .seed = in.seed}, &guide);
 }
 
-void GatherStage::record(Recorder& rec, const RayStage& rays, const SamplesStage::Output& samples, const PhotonTreeStage::Output& map,
-                         const CutStage::Output& cut, const Input& in, GuideStage* guide) const
+void GatherStage::record(Recorder& rec, const RayStage& rays, const SamplesStage::Output& samples,
+                         const PhotonTreeStage::Output& map, const CutStage::Output& cut, const Input& in,
+                         GuideStage* guide) const
 {
     gpu::GatherParams params{.ray_count = in.ray_count,
                              .seed = in.seed,
@@ -51,26 +61,49 @@ void GatherStage::record(Recorder& rec, const RayStage& rays, const SamplesStage
             const auto scope = rec.scope("gather.link"); // the lookups: what the cut is there for
             if (in.mode == CutMode::kKnn)
                 rec.runIndirect(link_knn_, queue->size, 0, params,
-                                {{"Queue", queue->size}, {"Rays", queue->rays}, {"Hits", hits_}, {"States", states_}, {"NextQueue", next->size},
-                                 {"NextRays", next->rays}, {"GatheredBlock", gathered_}, {"Size", map.size}, {"TreeNodes", map.tree.nodes()},
+                                {{"Queue", queue->size},
+                                 {"Rays", queue->rays},
+                                 {"Hits", hits_},
+                                 {"States", states_},
+                                 {"NextQueue", next->size},
+                                 {"NextRays", next->rays},
+                                 {"GatheredBlock", gathered_},
+                                 {"Size", map.size},
+                                 {"TreeNodes", map.tree.nodes()},
                                  {"Photons", map.photons}});
             else
                 rec.runIndirect(link_, queue->size, 0, params,
-                                {{"Queue", queue->size}, {"Rays", queue->rays}, {"Hits", hits_}, {"States", states_}, {"NextQueue", next->size},
-                                 {"NextRays", next->rays}, {"GatheredBlock", gathered_}, {"CutSize", cut.size}, {"TreeNodes", cut.tree.nodes()},
+                                {{"Queue", queue->size},
+                                 {"Rays", queue->rays},
+                                 {"Hits", hits_},
+                                 {"States", states_},
+                                 {"NextQueue", next->size},
+                                 {"NextRays", next->rays},
+                                 {"GatheredBlock", gathered_},
+                                 {"CutSize", cut.size},
+                                 {"TreeNodes", cut.tree.nodes()},
                                  {"CutNodes", cut.nodes}});
         }
         rays.close(rec, next->size);
         std::swap(queue, next);
     }
     rec.run(sum_, max_samples_ * gpu::kRaysGroupSize, params,
-            {{"Size", samples.size}, {"GatheredBlock", gathered_}, {"Samples", samples.samples}, {"KeptSize", samples.kept}});
+            {{"Size", samples.size},
+             {"GatheredBlock", gathered_},
+             {"Samples", samples.samples},
+             {"KeptSize", samples.kept}});
     if (!in.by_direction)
         return;
     rec.copy(harmonics_, old_harmonics_, harmonics_.size());
     rec.runIndirect(carry_, samples.kept, 0, NoParams{},
-                    {{"KeptSize", samples.kept}, {"Kept", samples.kept_from}, {"OldHarmonics", old_harmonics_}, {"Harmonics", harmonics_}});
+                    {{"KeptSize", samples.kept},
+                     {"Kept", samples.kept_from},
+                     {"OldHarmonics", old_harmonics_},
+                     {"Harmonics", harmonics_}});
     rec.run(project_, max_samples_ * gpu::kRaysGroupSize, params,
-            {{"Size", samples.size}, {"GatheredBlock", gathered_}, {"Samples", samples.samples}, {"Harmonics", harmonics_},
+            {{"Size", samples.size},
+             {"GatheredBlock", gathered_},
+             {"Samples", samples.samples},
+             {"Harmonics", harmonics_},
              {"KeptSize", samples.kept}});
 }

@@ -22,11 +22,13 @@ public:
         bool by_direction = false; // whether harmonics() is wanted; only in scenes with rough reflection
     };
     /// Only tells `guide` where the samples' rays end.
-    void look(Recorder& rec, const RayStage& rays, const SamplesStage::Output& samples, const Input& in, GuideStage& guide) const;
-    /// Sets irradiance and harmonic of samples.samples, except of those that are kept. @param guide if not null is told where
-    /// rays end
-    void record(Recorder& rec, const RayStage& rays, const SamplesStage::Output& samples, const PhotonTreeStage::Output& map,
-                const CutStage::Output& cut, const Input& in, GuideStage* guide = nullptr) const;
+    void look(Recorder& rec, const RayStage& rays, const SamplesStage::Output& samples, const Input& in,
+              GuideStage& guide) const;
+    /// Sets irradiance and harmonic of samples.samples, except of those that are kept. @param guide if not null is told
+    /// where rays end
+    void record(Recorder& rec, const RayStage& rays, const SamplesStage::Output& samples,
+                const PhotonTreeStage::Output& map, const CutStage::Output& cut, const Input& in,
+                GuideStage* guide = nullptr) const;
 
     /// The light of the samples by direction, as the last record() that was asked for it left it.
     const Buffer& harmonics() const { return harmonics_; } // gpu::SampleHarmonics[samples]

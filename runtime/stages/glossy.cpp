@@ -3,11 +3,14 @@
 #include "runtime/stages/glossy_lobe.h"
 
 GlossyStage::GlossyStage(const Device& device, const SceneGpu& scene, uint32_t max_pixels)
-    : generate_(device.kernel("glossy/generate", scene.constants())), link_(device.kernel("glossy/link", scene.constants())),
-      harmonics_(device.kernel("glossy/harmonics", scene.constants())),
-      queue_(device, "glossy.queue", max_pixels), next_queue_(device, "glossy.next_queue", max_pixels),
-      hits_(device.texelArray<gpu::Hit>("glossy.hits", max_pixels)), states_(device.array<gpu::GatherState>("glossy.states", max_pixels)),
-      lobes_(device.upload<gpu::GlossyLobe>("glossy.lobes", scene.reflectsRoughly() ? glossyLobes() : std::vector<gpu::GlossyLobe>(1))),
+    : generate_(device.kernel("glossy/generate", scene.constants())),
+      link_(device.kernel("glossy/link", scene.constants())),
+      harmonics_(device.kernel("glossy/harmonics", scene.constants())), queue_(device, "glossy.queue", max_pixels),
+      next_queue_(device, "glossy.next_queue", max_pixels),
+      hits_(device.texelArray<gpu::Hit>("glossy.hits", max_pixels)),
+      states_(device.array<gpu::GatherState>("glossy.states", max_pixels)),
+      lobes_(device.upload<gpu::GlossyLobe>("glossy.lobes",
+                                            scene.reflectsRoughly() ? glossyLobes() : std::vector<gpu::GlossyLobe>(1))),
       shares_(device.array<float>("glossy.shares", scene.reflectsRoughly() ? max_pixels : 1))
 {
 }
@@ -22,7 +25,11 @@ void GlossyStage::record(Recorder& rec, const RayStage& rays, const CutStage::Ou
                              .shared_ = in.shared};
     rays.reset(rec, queue_.size);
     rec.run(generate_, in.point_count, params,
-            {{"Points", in.points}, {"Queue", queue_.size}, {"Rays", queue_.rays}, {"States", states_}, {"Shares", shares_}});
+            {{"Points", in.points},
+             {"Queue", queue_.size},
+             {"Rays", queue_.rays},
+             {"States", states_},
+             {"Shares", shares_}});
     rays.close(rec, queue_.size);
     const RayQueue* queue = &queue_;
     const RayQueue* next = &next_queue_;
@@ -31,17 +38,32 @@ void GlossyStage::record(Recorder& rec, const RayStage& rays, const CutStage::Ou
         rays.closest(rec, *queue, hits_, traceSeed(in.seed, in.first_sample, ~params.depth));
         rays.reset(rec, next->size);
         rec.runIndirect(link_, queue->size, 0, params,
-                        {{"Queue", queue->size}, {"Rays", queue->rays}, {"Hits", hits_}, {"States", states_}, {"NextQueue", next->size},
-                         {"NextRays", next->rays}, {"Radiance", in.radiance}, {"CutSize", cut.size}, {"TreeNodes", cut.tree.nodes()},
+                        {{"Queue", queue->size},
+                         {"Rays", queue->rays},
+                         {"Hits", hits_},
+                         {"States", states_},
+                         {"NextQueue", next->size},
+                         {"NextRays", next->rays},
+                         {"Radiance", in.radiance},
+                         {"CutSize", cut.size},
+                         {"TreeNodes", cut.tree.nodes()},
                          {"CutNodes", cut.nodes}});
         rays.close(rec, next->size);
         std::swap(queue, next);
     }
 }
 
-void GlossyStage::recordHarmonics(Recorder& rec, const InterpolateStage::Sorted& samples, const Buffer& harmonics, const Input& in) const
+void GlossyStage::recordHarmonics(Recorder& rec, const InterpolateStage::Sorted& samples, const Buffer& harmonics,
+                                  const Input& in) const
 {
     rec.run(harmonics_, in.point_count, gpu::GlossyParams{.point_count = in.point_count},
-            {{"Size", samples.size}, {"TreeNodes", samples.tree.nodes()}, {"Samples", samples.samples}, {"Points", in.points},
-             {"Radiance", in.radiance}, {"Order", samples.tree.order()}, {"Harmonics", harmonics}, {"Lobes", lobes_}, {"Shares", shares_}});
+            {{"Size", samples.size},
+             {"TreeNodes", samples.tree.nodes()},
+             {"Samples", samples.samples},
+             {"Points", in.points},
+             {"Radiance", in.radiance},
+             {"Order", samples.tree.order()},
+             {"Harmonics", harmonics},
+             {"Lobes", lobes_},
+             {"Shares", shares_}});
 }

@@ -6,7 +6,10 @@ namespace
 {
 constexpr uint32_t kManyLights = 16; // from here on some of them may be out of sight
 
-bool isBeam(uint32_t kind) { return kind == gpu::kLightDirectional || kind == gpu::kLightEnvironment; }
+bool isBeam(uint32_t kind)
+{
+    return kind == gpu::kLightDirectional || kind == gpu::kLightEnvironment;
+}
 
 struct LightGroups
 {
@@ -41,7 +44,8 @@ LightGroups groupsOf(std::span<const LightShare> lights)
 bool GuideStage::helps(const SceneGpu& scene)
 {
     const auto lights = scene.lightShares();
-    return lights.size() >= kManyLights || std::ranges::any_of(lights, [](const LightShare& l) { return isBeam(l.kind); });
+    return lights.size() >= kManyLights ||
+           std::ranges::any_of(lights, [](const LightShare& l) { return isBeam(l.kind); });
 }
 
 GuideStage::GuideStage(const Device& device, const SceneGpu& scene, uint32_t max_paths)
@@ -62,13 +66,18 @@ void GuideStage::reset(Recorder& rec)
     has_learned_ = false;
     rec.clear(scores_);
     rec.clear(wanted_);
-    rec.run(learn_, gpu::kGuideLearnSize, NoParams{}, {{"Groups", groups_}, {"Scores", scores_}, {"Distribution", distribution_}});
+    rec.run(learn_, gpu::kGuideLearnSize, NoParams{},
+            {{"Groups", groups_}, {"Scores", scores_}, {"Distribution", distribution_}});
 }
 
 void GuideStage::emit(Recorder& rec, const Buffer& starts, const gpu::EmitParams& params) const
 {
     rec.run(emit_, params.path_count, params,
-            {{"Groups", groups_}, {"Distribution", distribution_}, {"OtherLights", other_lights_}, {"Starts", starts}, {"Cells", cells_}});
+            {{"Groups", groups_},
+             {"Distribution", distribution_},
+             {"OtherLights", other_lights_},
+             {"Starts", starts},
+             {"Cells", cells_}});
 }
 
 void GuideStage::mark(Recorder& rec, const RayQueue& queue, uint32_t max_rays, const Buffer& hits)
@@ -78,11 +87,18 @@ void GuideStage::mark(Recorder& rec, const RayQueue& queue, uint32_t max_rays, c
             {{"Queue", queue.size}, {"Rays", queue.rays}, {"Hits", hits}, {"Wanted", wanted_}});
 }
 
-void GuideStage::learn(Recorder& rec, const Buffer& photons, const Buffer& flags, uint32_t path_count, uint32_t bounce_limit)
+void GuideStage::learn(Recorder& rec, const Buffer& photons, const Buffer& flags, uint32_t path_count,
+                       uint32_t bounce_limit)
 {
     has_learned_ = true;
     rec.run(score_, path_count, gpu::ScoreParams{.path_count = path_count, .bounce_limit = bounce_limit},
-            {{"Groups", groups_}, {"Distribution", distribution_}, {"Cells", cells_}, {"Photons", photons}, {"Flags", flags},
-             {"Wanted", wanted_}, {"Scores", scores_}});
-    rec.run(learn_, gpu::kGuideLearnSize, NoParams{}, {{"Groups", groups_}, {"Scores", scores_}, {"Distribution", distribution_}});
+            {{"Groups", groups_},
+             {"Distribution", distribution_},
+             {"Cells", cells_},
+             {"Photons", photons},
+             {"Flags", flags},
+             {"Wanted", wanted_},
+             {"Scores", scores_}});
+    rec.run(learn_, gpu::kGuideLearnSize, NoParams{},
+            {{"Groups", groups_}, {"Scores", scores_}, {"Distribution", distribution_}});
 }

@@ -1,6 +1,6 @@
-// Guided emission: learns which photons fall where gathering rays look, so that the next ones are not wasted on the roof.
-// After projection maps (Jensen 2001, 5.3), learned rather than drawn; every photon's power is divided by the change of its
-// probability, so that the map stays unbiased whatever was learned.
+// Guided emission: learns which photons fall where gathering rays look, so that the next ones are not wasted on the
+// roof. After projection maps (Jensen 2001, 5.3), learned rather than drawn; every photon's power is divided by the
+// change of its probability, so that the map stays unbiased whatever was learned.
 #pragma once
 #include "runtime/stages/rays.h"
 #include "shaders/guide/guide.h"
@@ -18,9 +18,9 @@ public:
     bool hasLearned() const { return has_learned_; }
 
     // What was learned last, for tests and views.
-    const Buffer& cells() const { return cells_; }           // uint[path_count]: where each path left; kNone: it did not
+    const Buffer& cells() const { return cells_; } // uint[path_count]: where each path left; kNone: it did not
     const Buffer& distribution() const { return distribution_; } // gpu::GuideDistribution
-    const Buffer& wanted() const { return wanted_; }         // uint[kGuideVoxels^3]: 1 where gathering rays end
+    const Buffer& wanted() const { return wanted_; }             // uint[kGuideVoxels^3]: 1 where gathering rays end
 
     /// `params.path_count` photons leave the lights by what was learned. @param starts gpu::PhotonStart[path_count]
     void emit(Recorder& rec, const Buffer& starts, const gpu::EmitParams& params) const;

@@ -6,9 +6,11 @@ namespace
 constexpr float kAimedFraction = 0.9f;
 } // namespace
 
-PhotonStage::PhotonStage(const Device& device, const SceneGpu& scene, PhotonKind kind, uint32_t max_paths, uint32_t max_bounces)
-    : kind_(kind), has_specular_(scene.hasFeature(gpu::kFeatureSpecular)), has_targets_(scene.info().caustic_target_count > 0),
-      emit_(device.kernel("photons/emit", scene.constants())), trace_(device.kernel("photons/trace", scene.constants())),
+PhotonStage::PhotonStage(const Device& device, const SceneGpu& scene, PhotonKind kind, uint32_t max_paths,
+                         uint32_t max_bounces)
+    : kind_(kind), has_specular_(scene.hasFeature(gpu::kFeatureSpecular)),
+      has_targets_(scene.info().caustic_target_count > 0), emit_(device.kernel("photons/emit", scene.constants())),
+      trace_(device.kernel("photons/trace", scene.constants())),
       starts_(device.array<gpu::PhotonStart>("photons.starts", max_paths)),
       photons_(device.array<gpu::Photon>("photons.photons", uint64_t(max_paths) * max_bounces)),
       flags_(device.array<uint32_t>("photons.flags", uint64_t(max_paths) * max_bounces)),
@@ -36,7 +38,8 @@ PhotonStage::Output PhotonStage::record(Recorder& rec, const RayStage& rays, con
                                   .event_limit = in.bounce_limit + (has_specular_ ? in.specular_depth : 0),
                                   .bounce_limit = in.bounce_limit,
                                   .caustic = caustic};
-    rec.run(trace_, in.path_count, params, {{"Starts", starts_}, {"Photons", photons_}, {"Flags", flags_}, {"Traced", traced_}});
+    rec.run(trace_, in.path_count, params,
+            {{"Starts", starts_}, {"Photons", photons_}, {"Flags", flags_}, {"Traced", traced_}});
     rays.count(rec, traced_);
     return {.photons = photons_, .flags = flags_, .slot_count = in.path_count * in.bounce_limit};
 }

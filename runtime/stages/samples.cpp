@@ -19,7 +19,8 @@ uint32_t strideFor(uint32_t pixel_count, uint32_t max_samples)
 
 float diagonalOf(const gpu::SceneInfo& info)
 {
-    return std::hypot(info.bounds_max.x - info.bounds_min.x, info.bounds_max.y - info.bounds_min.y, info.bounds_max.z - info.bounds_min.z);
+    return std::hypot(info.bounds_max.x - info.bounds_min.x, info.bounds_max.y - info.bounds_min.y,
+                      info.bounds_max.z - info.bounds_min.z);
 }
 
 uint32_t levelsFor(uint32_t width, uint32_t height, uint32_t stride)
@@ -39,58 +40,95 @@ uint32_t pointCount(uint32_t width, uint32_t height, uint32_t stride)
 }
 } // namespace
 
-SamplesStage::SamplesStage(const Device& device, const SceneGpu& scene, uint32_t width, uint32_t height, uint32_t max_samples)
-    : width_(width), height_(height), diagonal_(diagonalOf(scene.info())), stride_(strideFor(width * height, max_samples)), levels_(levelsFor(width, height, stride_)),
-      grid_count_(1u << (2 * levels_)), point_count_(pointCount(width, height, stride_)), points_kernel_(device.kernel("samples/points")),
-      mean_(device.kernel("samples/mean")), variation_(device.kernel("samples/variation")), budget_(device.kernel("samples/budget")),
-      seed_(device.kernel("samples/seed")), assign_(device.kernel("samples/assign")), update_(device.kernel("samples/update")),
-      snap_(device.kernel("samples/snap")), measure_(device.kernel("samples/measure")), occupied_kernel_(device.kernel("samples/occupied")), place_(device.kernel("samples/place")),
-      count_(device.kernel("samples/count")), recall_(device.kernel("samples/recall")), classify_(device.kernel("samples/classify")),
-      retain_(device.kernel("samples/retain")), mask_(device.kernel("samples/mask")), keep_(device.kernel("samples/keep")),
-      adopt_(device.kernel("samples/adopt")),
-      seed_compaction_(device, "samples.seed_compaction", point_count_), sample_compaction_(device, "samples.compaction", max_samples),
-      tree_(device, "samples.tree", max_samples), point_size_(device.array<gpu::QueueSize>("samples.point_size", 1)),
+SamplesStage::SamplesStage(const Device& device, const SceneGpu& scene, uint32_t width, uint32_t height,
+                           uint32_t max_samples)
+    : width_(width), height_(height), diagonal_(diagonalOf(scene.info())),
+      stride_(strideFor(width * height, max_samples)), levels_(levelsFor(width, height, stride_)),
+      grid_count_(1u << (2 * levels_)), point_count_(pointCount(width, height, stride_)),
+      points_kernel_(device.kernel("samples/points")), mean_(device.kernel("samples/mean")),
+      variation_(device.kernel("samples/variation")), budget_(device.kernel("samples/budget")),
+      seed_(device.kernel("samples/seed")), assign_(device.kernel("samples/assign")),
+      update_(device.kernel("samples/update")), snap_(device.kernel("samples/snap")),
+      measure_(device.kernel("samples/measure")), occupied_kernel_(device.kernel("samples/occupied")),
+      place_(device.kernel("samples/place")), count_(device.kernel("samples/count")),
+      recall_(device.kernel("samples/recall")), classify_(device.kernel("samples/classify")),
+      retain_(device.kernel("samples/retain")), mask_(device.kernel("samples/mask")),
+      keep_(device.kernel("samples/keep")), adopt_(device.kernel("samples/adopt")),
+      seed_compaction_(device, "samples.seed_compaction", point_count_),
+      sample_compaction_(device, "samples.compaction", max_samples), tree_(device, "samples.tree", max_samples),
+      point_size_(device.array<gpu::QueueSize>("samples.point_size", 1)),
       points_(device.array<gpu::SamplePoint>("samples.points", point_count_)),
       quad_nodes_(device.array<gpu::QuadNode>("samples.quad_nodes", grid_count_ / 3 + 1)),
       budgets_(device.array<uint32_t>("samples.budgets", grid_count_ / 3 + 1)),
-      seed_flags_(device.array<uint32_t>("samples.seed_flags", point_count_)), seeds_(device.array<uint32_t>("samples.seeds", point_count_)),
+      seed_flags_(device.array<uint32_t>("samples.seed_flags", point_count_)),
+      seeds_(device.array<uint32_t>("samples.seeds", point_count_)),
       cluster_size_(device.array<gpu::QueueSize>("samples.cluster_size", 1)),
       clusters_(device.array<gpu::Cluster>("samples.clusters", max_samples)),
       cluster_spheres_(device.array<gpu::vec4>("samples.cluster_spheres", max_samples)),
-      sums_(device.array<gpu::ClusterSums>("samples.sums", max_samples)), owners_(device.array<gpu::uvec2>("samples.owners", point_count_)),
+      sums_(device.array<gpu::ClusterSums>("samples.sums", max_samples)),
+      owners_(device.array<gpu::uvec2>("samples.owners", point_count_)),
       occupied_flags_(device.array<uint32_t>("samples.occupied_flags", max_samples)),
-      occupied_(device.array<uint32_t>("samples.occupied", max_samples)), new_size_(device.array<gpu::QueueSize>("samples.new_size", 1)),
-      size_(device.array<gpu::QueueSize>("samples.size", 1)), samples_(device.array<gpu::Sample>("samples.samples", max_samples)),
+      occupied_(device.array<uint32_t>("samples.occupied", max_samples)),
+      new_size_(device.array<gpu::QueueSize>("samples.new_size", 1)),
+      size_(device.array<gpu::QueueSize>("samples.size", 1)),
+      samples_(device.array<gpu::Sample>("samples.samples", max_samples)),
       spheres_(device.array<gpu::vec4>("samples.spheres", max_samples)),
       tenures_(device.array<gpu::SampleTenure>("samples.tenures", max_samples)),
-      old_size_(device.array<gpu::QueueSize>("samples.old_size", 1)), old_samples_(device.array<gpu::Sample>("samples.old", max_samples)),
+      old_size_(device.array<gpu::QueueSize>("samples.old_size", 1)),
+      old_samples_(device.array<gpu::Sample>("samples.old", max_samples)),
       old_tenures_(device.array<gpu::SampleTenure>("samples.old_tenures", max_samples)),
-      quota_(device.array<gpu::SampleQuota>("samples.quota", 1)), claims_(device.array<gpu::uvec2>("samples.claims", point_count_)),
-      rest_(device.array<gpu::SamplePoint>("samples.rest", point_count_)), kept_(device.array<uint32_t>("samples.kept", max_samples)),
+      quota_(device.array<gpu::SampleQuota>("samples.quota", 1)),
+      claims_(device.array<gpu::uvec2>("samples.claims", point_count_)),
+      rest_(device.array<gpu::SamplePoint>("samples.rest", point_count_)),
+      kept_(device.array<uint32_t>("samples.kept", max_samples)),
       kept_size_(device.array<gpu::QueueSize>("samples.kept_size", 1))
 {
 }
 
-/// Of the last frame's samples, those that are kept come first in samples_; rest_ holds the points that new ones are for.
+/// Of the last frame's samples, those that are kept come first in samples_; rest_ holds the points that new ones are
+/// for.
 void SamplesStage::recordKept(Recorder& rec, const gpu::ClusterParams& params) const
 {
     rec.copy(size_, old_size_, sizeof(gpu::QueueSize));
     rec.runIndirect(recall_, old_size_, 0, NoParams{},
-                    {{"Size", old_size_}, {"Samples", samples_}, {"Tenures", tenures_}, {"OldSamples", old_samples_},
-                     {"OldTenures", old_tenures_}, {"Spheres", cluster_spheres_}, {"Sums", sums_}});
+                    {{"Size", old_size_},
+                     {"Samples", samples_},
+                     {"Tenures", tenures_},
+                     {"OldSamples", old_samples_},
+                     {"OldTenures", old_tenures_},
+                     {"Spheres", cluster_spheres_},
+                     {"Sums", sums_}});
     tree_.record(rec, cluster_spheres_, old_size_);
     rec.clear(quota_);
     rec.run(classify_, point_count_, params,
-            {{"Size", old_size_}, {"Points", points_}, {"OldSamples", old_samples_}, {"OldTenures", old_tenures_},
-             {"TreeNodes", tree_.nodes()}, {"Order", tree_.order()}, {"Claims", claims_}, {"Sums", sums_}, {"Quota", quota_}});
+            {{"Size", old_size_},
+             {"Points", points_},
+             {"OldSamples", old_samples_},
+             {"OldTenures", old_tenures_},
+             {"TreeNodes", tree_.nodes()},
+             {"Order", tree_.order()},
+             {"Claims", claims_},
+             {"Sums", sums_},
+             {"Quota", quota_}});
     rec.run(retain_, 1, params,
-            {{"Size", old_size_}, {"Sums", sums_}, {"OldTenures", old_tenures_}, {"Quota", quota_}, {"Flags", occupied_flags_}});
+            {{"Size", old_size_},
+             {"Sums", sums_},
+             {"OldTenures", old_tenures_},
+             {"Quota", quota_},
+             {"Flags", occupied_flags_}});
     rec.run(mask_, point_count_, params,
             {{"Points", points_}, {"Flags", occupied_flags_}, {"Claims", claims_}, {"Sums", sums_}, {"Rest", rest_}});
     sample_compaction_.record(rec, occupied_flags_, kept_, kept_size_, old_size_);
     rec.runIndirect(keep_, kept_size_, 0, NoParams{},
-                    {{"KeptSize", kept_size_}, {"Kept", kept_}, {"Sums", sums_}, {"Points", points_}, {"OldSamples", old_samples_},
-                     {"OldTenures", old_tenures_}, {"Samples", samples_}, {"Spheres", spheres_}, {"Tenures", tenures_}});
+                    {{"KeptSize", kept_size_},
+                     {"Kept", kept_},
+                     {"Sums", sums_},
+                     {"Points", points_},
+                     {"OldSamples", old_samples_},
+                     {"OldTenures", old_tenures_},
+                     {"Samples", samples_},
+                     {"Spheres", spheres_},
+                     {"Tenures", tenures_}});
 }
 
 /// Algorithm 1: as many clusters as the budget has left, each at one of `points`.
@@ -112,37 +150,60 @@ void SamplesStage::recordSeeds(Recorder& rec, const RayStage& rays, const Input&
     rec.clear(seed_flags_);
     for (seeding.level = levels_; seeding.level >= 1; --seeding.level)
         rec.run(budget_, levelThreads(seeding.level), seeding,
-                {{"Points", points}, {"Nodes", quad_nodes_}, {"Budgets", budgets_}, {"Seeds", seed_flags_}, {"KeptSize", kept_size_}});
+                {{"Points", points},
+                 {"Nodes", quad_nodes_},
+                 {"Budgets", budgets_},
+                 {"Seeds", seed_flags_},
+                 {"KeptSize", kept_size_}});
     rays.resize(rec, point_size_, point_count_);
     seed_compaction_.record(rec, seed_flags_, seeds_, cluster_size_, point_size_);
     rec.runIndirect(seed_, cluster_size_, 0, NoParams{},
-                    {{"Size", cluster_size_}, {"Seeds", seeds_}, {"Points", points}, {"Clusters", clusters_},
-                     {"Spheres", cluster_spheres_}, {"Sums", sums_}});
+                    {{"Size", cluster_size_},
+                     {"Seeds", seeds_},
+                     {"Points", points},
+                     {"Clusters", clusters_},
+                     {"Spheres", cluster_spheres_},
+                     {"Sums", sums_}});
 }
 
 void SamplesStage::assign(Recorder& rec, const gpu::ClusterParams& params, const Buffer& points) const
 {
     tree_.record(rec, cluster_spheres_, cluster_size_);
     rec.run(assign_, point_count_, params,
-            {{"Size", cluster_size_}, {"Points", points}, {"Clusters", clusters_}, {"TreeNodes", tree_.nodes()}, {"Order", tree_.order()},
-             {"Sums", sums_}, {"Owners", owners_}, {"Seeds", seeds_}});
+            {{"Size", cluster_size_},
+             {"Points", points},
+             {"Clusters", clusters_},
+             {"TreeNodes", tree_.nodes()},
+             {"Order", tree_.order()},
+             {"Sums", sums_},
+             {"Owners", owners_},
+             {"Seeds", seeds_}});
 }
 
 /// Algorithm 2 over `points`; at its end every point of the picture has an owner.
-void SamplesStage::recordClusters(Recorder& rec, const Input& in, const gpu::ClusterParams& params, const Buffer& points) const
+void SamplesStage::recordClusters(Recorder& rec, const Input& in, const gpu::ClusterParams& params,
+                                  const Buffer& points) const
 {
     for (uint32_t i = 0; in.mode == SamplesMode::kKmeans && i < in.iterations; ++i)
     {
         assign(rec, params, points);
-        rec.runIndirect(update_, cluster_size_, 0, params,
-                        {{"Size", cluster_size_}, {"Sums", sums_}, {"Clusters", clusters_}, {"Spheres", cluster_spheres_}});
+        rec.runIndirect(
+            update_, cluster_size_, 0, params,
+            {{"Size", cluster_size_}, {"Sums", sums_}, {"Clusters", clusters_}, {"Spheres", cluster_spheres_}});
     }
     if (in.age == 0)
         return assign(rec, params, points);
     tree_.record(rec, cluster_spheres_, cluster_size_);
     rec.run(adopt_, point_count_, params,
-            {{"Size", cluster_size_}, {"Points", points_}, {"Clusters", clusters_}, {"TreeNodes", tree_.nodes()}, {"Order", tree_.order()},
-             {"Sums", sums_}, {"Owners", owners_}, {"Seeds", seeds_}, {"Claims", claims_}});
+            {{"Size", cluster_size_},
+             {"Points", points_},
+             {"Clusters", clusters_},
+             {"TreeNodes", tree_.nodes()},
+             {"Order", tree_.order()},
+             {"Sums", sums_},
+             {"Owners", owners_},
+             {"Seeds", seeds_},
+             {"Claims", claims_}});
 }
 
 SamplesStage::Output SamplesStage::record(Recorder& rec, const RayStage& rays, const Input& in) const
@@ -170,8 +231,14 @@ SamplesStage::Output SamplesStage::record(Recorder& rec, const RayStage& rays, c
                     {{"Size", cluster_size_}, {"Sums", sums_}, {"Flags", occupied_flags_}});
     sample_compaction_.record(rec, occupied_flags_, occupied_, new_size_, cluster_size_);
     rec.runIndirect(place_, new_size_, 0, params,
-                    {{"NewSize", new_size_}, {"Occupied", occupied_}, {"Sums", sums_}, {"Points", points_}, {"Samples", samples_},
-                     {"Spheres", spheres_}, {"Tenures", tenures_}, {"KeptSize", kept_size_}});
+                    {{"NewSize", new_size_},
+                     {"Occupied", occupied_},
+                     {"Sums", sums_},
+                     {"Points", points_},
+                     {"Samples", samples_},
+                     {"Spheres", spheres_},
+                     {"Tenures", tenures_},
+                     {"KeptSize", kept_size_}});
     rec.run(count_, 1, NoParams{}, {{"KeptSize", kept_size_}, {"NewSize", new_size_}, {"Size", size_}});
     return output();
 }

@@ -25,30 +25,33 @@ public:
         float alpha;         // of Eq. 2, per metre
         float reach;         // of a sample, in mean distances of its cluster's points to their centre
         uint32_t seed;
-        /// Frames since all samples were new. Above 0, those of the last record() are kept that still own a point, with their
-        /// irradiance; others take the rest of the budget. Lights, scene and settings must be the same as then.
+        /// Frames since all samples were new. Above 0, those of the last record() are kept that still own a point, with
+        /// their irradiance; others take the rest of the budget. Lights, scene and settings must be the same as then.
         uint32_t age = 0;
         uint32_t frameSeed() const { return age > 0 ? traceSeed(seed, age, 0) : seed; } // another in every frame
     };
     struct Output
     {
-        const Buffer& size;    // gpu::QueueSize: samples
-        const Buffer& samples; // gpu::Sample[size.count], irradiance still to be gathered but of those that are kept
-        const Buffer& spheres; // vec4[size.count]: their positions and supports
-        const Buffer& kept;    // gpu::QueueSize: samples that are kept, the first ones
+        const Buffer& size;      // gpu::QueueSize: samples
+        const Buffer& samples;   // gpu::Sample[size.count], irradiance still to be gathered but of those that are kept
+        const Buffer& spheres;   // vec4[size.count]: their positions and supports
+        const Buffer& kept;      // gpu::QueueSize: samples that are kept, the first ones
         const Buffer& kept_from; // uint[kept.count]: their indices in the last frame
     };
     Output record(Recorder& rec, const RayStage& rays, const Input& in) const;
     /// What the last record() left.
-    Output output() const { return {.size = size_, .samples = samples_, .spheres = spheres_, .kept = kept_size_, .kept_from = kept_}; }
+    Output output() const
+    {
+        return {.size = size_, .samples = samples_, .spheres = spheres_, .kept = kept_size_, .kept_from = kept_};
+    }
 
     struct Quadtree // how the samples came about
     {
-        uint32_t stride; // pixels between neighbouring points, each way
-        uint32_t levels; // points are level 0
+        uint32_t stride;       // pixels between neighbouring points, each way
+        uint32_t levels;       // points are level 0
         const Buffer& budgets; // uint[], by node as samples/quadtree.glsl orders them: samples that it was to get
-        const Buffer& owners;  // uvec2[], by point in Z-order: its cluster, or kKeptBit | the kept sample's index in the
-                               // last frame, or kNone; bits of its eps
+        const Buffer& owners; // uvec2[], by point in Z-order: its cluster, or kKeptBit | the kept sample's index in the
+                              // last frame, or kNone; bits of its eps
     };
     Quadtree quadtree() const { return {.stride = stride_, .levels = levels_, .budgets = budgets_, .owners = owners_}; }
 
@@ -72,8 +75,10 @@ private:
     uint32_t width_, height_;
     float diagonal_; // of the scene, metres
     uint32_t stride_, levels_;
-    uint32_t grid_count_, point_count_; // points of the quadtree's square; the first of them that hold all of the picture
-    Kernel points_kernel_, mean_, variation_, budget_, seed_, assign_, update_, snap_, measure_, occupied_kernel_, place_, count_;
+    uint32_t grid_count_,
+        point_count_; // points of the quadtree's square; the first of them that hold all of the picture
+    Kernel points_kernel_, mean_, variation_, budget_, seed_, assign_, update_, snap_, measure_, occupied_kernel_,
+        place_, count_;
     Kernel recall_, classify_, retain_, mask_, keep_, adopt_; // where samples are kept
     Compaction seed_compaction_, sample_compaction_;
     Tree tree_;

@@ -208,6 +208,10 @@ TEST(BuildLights, ASunLeavesHalfOfTheSamplesToLamps)
 {
     SceneData scene = withPunctual({.kind = gpu::kLightDirectional, .intensity = {1000, 1000, 1000}});
     EXPECT_EQ(buildLights(scene).lights.at(0).pmf, 1); // alone it has all
+    SceneData suns = scene;
+    for (const float i : {3.0f, 0.7f, 0.1f})
+        suns.lights.push_back({.kind = gpu::kLightDirectional, .intensity = {i, i, i}});
+    EXPECT_GT(buildLights(suns).lights.at(0).pmf, 0.99); // and so have suns among themselves
     scene.lights.push_back({.kind = gpu::kLightPoint, .intensity = {1, 1, 1}});
     scene.lights.push_back({.kind = gpu::kLightPoint, .intensity = {3, 3, 3}});
     const LightTables tables = buildLights(scene);

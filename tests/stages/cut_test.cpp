@@ -120,9 +120,14 @@ class Cuts : public GiTest
 {
 protected:
     static constexpr uint32_t kNearest = 50;
-    static constexpr CutStage::Input kRefined{
-        .mode = CutMode::kRefined, .iterations = 4, .difference = 0.2f, .photon_count = kNearest, .radius = 0.4f, .shrink = 1,
-        .probes = 0, .seed = 0};
+    static constexpr CutStage::Input kRefined{.mode = CutMode::kRefined,
+                                              .iterations = 4,
+                                              .difference = 0.2f,
+                                              .photon_count = kNearest,
+                                              .radius = 0.4f,
+                                              .shrink = 1,
+                                              .probes = 0,
+                                              .seed = 0};
 
     void SetUp() override
     {
@@ -335,7 +340,8 @@ TEST_F(Cuts, ReachAsFarAsDensityEstimationWould)
         const double area = weight / above.irradiance;
         const double even = std::sqrt(area * kNearest / above.count() / std::numbers::pi);
         EXPECT_NEAR(node.support, gpu::kCutSpread * std::min(even, double(in.radius)), 1e-3 * node.support);
-        EXPECT_NEAR(shrunk_supports.at({node.center.x, node.center.y, node.center.z}), 0.25 * node.support, 1e-5 * node.support);
+        EXPECT_NEAR(shrunk_supports.at({node.center.x, node.center.y, node.center.z}), 0.25 * node.support,
+                    1e-5 * node.support);
     }
 }
 
@@ -349,10 +355,11 @@ TEST_F(Cuts, KeepTheirLightOnNarrowSurfaces)
     Random random(11);
     std::vector<gpu::Photon> photons;
     for (int i = 0; i < 2000; ++i)
-        photons.push_back({.position = {random.between(-kLength / 2, kLength / 2), 0, random.between(-kWidth / 2, kWidth / 2)},
-                           .direction = packedNormal({0, -1, 0}),
-                           .power = {1, 1, 1},
-                           .normal = packedNormal({0, 1, 0})});
+        photons.push_back(
+            {.position = {random.between(-kLength / 2, kLength / 2), 0, random.between(-kWidth / 2, kWidth / 2)},
+             .direction = packedNormal({0, -1, 0}),
+             .power = {1, 1, 1},
+             .normal = packedNormal({0, 1, 0})});
     const auto map = mapOf(*scene, photons);
     CutStage::Input in = kRefined;
     in.mode = CutMode::kLeaves;
@@ -472,7 +479,9 @@ TEST_F(Cuts, AreReadNearlyAsDensityIsEstimated)
                [&](Recorder& rec)
                {
                    const auto cut = stage.record(rec, map->rays, *map->gpu, in);
-                   gather.record(rec, map->rays, {.size = size, .samples = on_gpu, .spheres = spheres, .kept = kept, .kept_from = kept}, *map->gpu, cut,
+                   gather.record(rec, map->rays,
+                                 {.size = size, .samples = on_gpu, .spheres = spheres, .kept = kept, .kept_from = kept},
+                                 *map->gpu, cut,
                                  {.mode = mode,
                                   .ray_count = kRays,
                                   .specular_depth = 0,

@@ -10,8 +10,8 @@ namespace
 {
 constexpr uint32_t kPaths = 20000, kBounces = 2;
 
-/// A closed room of 4 x 3 x 4 m with a hole of 1 x 1 m in its roof, beside a wide field, under a sun: of the sun's photons
-/// few find the hole.
+/// A closed room of 4 x 3 x 4 m with a hole of 1 x 1 m in its roof, beside a wide field, under a sun: of the sun's
+/// photons few find the hole.
 class Guides : public GiTest
 {
 protected:
@@ -21,18 +21,19 @@ protected:
         SceneBuilder builder;
         const uint32_t white = builder.material(lambert(0.5));
         builder.quad({-20, -0.1f, 20}, {40, 0, 0}, {0, 0, -40}, white);
-        for (const auto& [corner, u, v] : {std::tuple<gpu::vec3, gpu::vec3, gpu::vec3>{{-2, 0, 2}, {4, 0, 0}, {0, 0, -4}},
-                                           {{-2, 0, -2}, {4, 0, 0}, {0, 3, 0}},
-                                           {{-2, 0, 2}, {0, 3, 0}, {4, 0, 0}},
-                                           {{-2, 0, -2}, {0, 3, 0}, {0, 0, 4}},
-                                           {{2, 0, -2}, {0, 0, 4}, {0, 3, 0}},
-                                           {{-2, 3, -2}, {4, 0, 0}, {0, 0, 1.5f}}, // the roof, around the hole
-                                           {{-2, 3, 0.5f}, {4, 0, 0}, {0, 0, 1.5f}},
-                                           {{-2, 3, -0.5f}, {1.5f, 0, 0}, {0, 0, 1}},
-                                           {{0.5f, 3, -0.5f}, {1.5f, 0, 0}, {0, 0, 1}}})
+        for (const auto& [corner, u, v] :
+             {std::tuple<gpu::vec3, gpu::vec3, gpu::vec3>{{-2, 0, 2}, {4, 0, 0}, {0, 0, -4}},
+              {{-2, 0, -2}, {4, 0, 0}, {0, 3, 0}},
+              {{-2, 0, 2}, {0, 3, 0}, {4, 0, 0}},
+              {{-2, 0, -2}, {0, 3, 0}, {0, 0, 4}},
+              {{2, 0, -2}, {0, 0, 4}, {0, 3, 0}},
+              {{-2, 3, -2}, {4, 0, 0}, {0, 0, 1.5f}}, // the roof, around the hole
+              {{-2, 3, 0.5f}, {4, 0, 0}, {0, 0, 1.5f}},
+              {{-2, 3, -0.5f}, {1.5f, 0, 0}, {0, 0, 1}},
+              {{0.5f, 3, -0.5f}, {1.5f, 0, 0}, {0, 0, 1}}})
             builder.quad(corner, u, v, white);
-        builder.light({{"type", "directional"}, {"intensity", 2}}, {{"rotation", {-std::sqrt(0.5), 0, 0, std::sqrt(0.5)}}});
-        builder.light({{"type", "point"}, {"intensity", 0.01}}, {{"translation", {1, 2, 1}}});
+        builder.light({{"type", "directional"}, {"intensity", 2}},
+                      {{"rotation", {-std::sqrt(0.5), 0, 0, std::sqrt(0.5)}}});
         scene_ = load(builder.compile());
         rays_.emplace(device(), *scene_);
         guide_.emplace(device(), *scene_, kPaths);
@@ -48,7 +49,10 @@ protected:
         for (uint32_t i = 0; i < 40000; ++i)
         {
             const Double3 d = normalized({random.between(-1, 1), random.between(-1, -0.1f), random.between(-1, 1)});
-            rays.push_back({.origin = {0.1f, 1, 0.2f}, .t_max = 1e30f, .direction = {float(d.x), float(d.y), float(d.z)}, .path = i});
+            rays.push_back({.origin = {0.1f, 1, 0.2f},
+                            .t_max = 1e30f,
+                            .direction = {float(d.x), float(d.y), float(d.z)},
+                            .path = i});
         }
         RayQueue queue(device(), "test.queue", uint32_t(rays.size()));
         queue.size = sizeBuffer(uint32_t(rays.size()));
@@ -103,20 +107,23 @@ TEST_F(Guides, SendPhotonsWhereLightIsWanted)
     look();
     const auto before = emit(0);
     const auto after = emit(1);
-    const auto useful = [](const std::vector<gpu::Photon>& photons) { return std::ranges::count_if(photons, isFloorOfRoom); };
-    fmt::print("  photons on the floor of the room: {} of {}, {} of {} when guided\n", useful(before), before.size(), useful(after),
-               after.size());
-    // The hole is 1/2500 of the sun's disc, and the lamp has 1/40000 of the power: nearly all photons were wasted, and 65 %
-    // of them are free to go elsewhere. A cell of the disc is 2.5 m^2 and most of it roof, so not all of those get in.
+    const auto useful = [](const std::vector<gpu::Photon>& photons)
+    { return std::ranges::count_if(photons, isFloorOfRoom); };
+    fmt::print("  photons on the floor of the room: {} of {}, {} of {} when guided\n", useful(before), before.size(),
+               useful(after), after.size());
+    // The hole is 1/2500 of the sun's disc: nearly all photons were wasted, and 65 % of them are free to go elsewhere. A
+    // cell of the disc is 2.5 m^2 and most of it roof, so not all of those get in.
     EXPECT_GT(useful(after), 20 * useful(before));
 }
 
 TEST_F(Guides, ChangeNoPower)
 {
     look();
-    // Irradiance of the floor from the lamp and the sun, known where bounces are left out: the sun's patch has 1 m^2.
-    const auto direct = [](const gpu::Photon& p) { return isFloorOfRoom(p) && std::abs(p.position.x) < 0.5f && std::abs(p.position.z) < 0.5f; };
-    constexpr uint32_t kRounds = 8, kBefore = 4; // until every cell of the hole is known: photons through others are few and heavy
+    // What the sun brings, known where bounces are left out: its patch on the floor has 1 m^2.
+    const auto direct = [](const gpu::Photon& p)
+    { return isFloorOfRoom(p) && std::abs(p.position.x) < 0.5f && std::abs(p.position.z) < 0.5f; };
+    constexpr uint32_t kRounds = 8,
+                       kBefore = 4; // until every cell of the hole is known: photons through others are few and heavy
     for (uint32_t round = 0; round < kBefore; ++round)
         (void)emit(round);
     double patch = 0, patch2 = 0, field = 0, field2 = 0;
@@ -132,8 +139,10 @@ TEST_F(Guides, ChangeNoPower)
         }
     }
     const double want_patch = 2, want_field = 2 * (40.0 * 40 - 4 * 4);
-    fmt::print("  sun through the hole: {:.4f} W of {:.4f} W, standard error {:.4f}; on the field {:.1f} W of {:.1f} W, {:.1f}\n",
-               patch / kRounds, want_patch, std::sqrt(patch2) / kRounds, field / kRounds, want_field, std::sqrt(field2) / kRounds);
+    fmt::print("  sun through the hole: {:.4f} W of {:.4f} W, standard error {:.4f}; on the field {:.1f} W of {:.1f} "
+               "W, {:.1f}\n",
+               patch / kRounds, want_patch, std::sqrt(patch2) / kRounds, field / kRounds, want_field,
+               std::sqrt(field2) / kRounds);
     EXPECT_LE(std::sqrt(patch2) / kRounds, 0.05 * want_patch) << "too few photons to tell";
     EXPECT_NEAR(patch / kRounds, want_patch, 4 * std::sqrt(patch2) / kRounds);
     EXPECT_NEAR(field / kRounds, want_field, 4 * std::sqrt(field2) / kRounds);
@@ -160,8 +169,10 @@ TEST_F(Guides, LearnTheSharesOfUsefulPhotonsByCell)
         for (uint32_t i = 0; i < gpu::kGuideTotal; ++i)
         {
             const uint32_t group = i / gpu::kGuideCells;
-            const double of_group = double(distribution.groups[group]) - (group > 0 ? distribution.groups[group - 1] : 0);
-            result.push_back(of_group * (double(distribution.cells[i]) - (i % gpu::kGuideCells > 0 ? distribution.cells[i - 1] : 0)));
+            const double of_group =
+                double(distribution.groups[group]) - (group > 0 ? distribution.groups[group - 1] : 0);
+            result.push_back(of_group * (double(distribution.cells[i]) -
+                                         (i % gpu::kGuideCells > 0 ? distribution.cells[i - 1] : 0)));
         }
         return result;
     };
@@ -172,7 +183,12 @@ TEST_F(Guides, LearnTheSharesOfUsefulPhotonsByCell)
            [&](Recorder& rec)
            {
                out.emplace(photons_->record(rec, *rays_,
-                                            {.path_count = kPaths, .bounce_limit = kBounces, .specular_depth = 0, .first_path = 0, .seed = 7, .guide = &*guide_}));
+                                            {.path_count = kPaths,
+                                             .bounce_limit = kBounces,
+                                             .specular_depth = 0,
+                                             .first_path = 0,
+                                             .seed = 7,
+                                             .guide = &*guide_}));
                guide_->learn(rec, out->photons, out->flags, kPaths, kBounces);
            });
     const auto photons = contents<gpu::Photon>(out->photons, out->slot_count);
@@ -180,8 +196,11 @@ TEST_F(Guides, LearnTheSharesOfUsefulPhotonsByCell)
     const gpu::SceneInfo& info = scene_->info();
     const auto voxel = [&](gpu::vec3 p)
     {
-        const auto along = [](float x, float low, float high) { return uint32_t(std::clamp((x - low) / (high - low) * 64, 0.0f, 63.0f)); };
-        return (along(p.z, info.bounds_min.z, info.bounds_max.z) * 64 + along(p.y, info.bounds_min.y, info.bounds_max.y)) * 64 +
+        const auto along = [](float x, float low, float high)
+        { return uint32_t(std::clamp((x - low) / (high - low) * 64, 0.0f, 63.0f)); };
+        return (along(p.z, info.bounds_min.z, info.bounds_max.z) * 64 +
+                along(p.y, info.bounds_min.y, info.bounds_max.y)) *
+                   64 +
                along(p.x, info.bounds_min.x, info.bounds_max.x);
     };
     const auto cells = contents<uint32_t>(guide_->cells(), kPaths);
@@ -194,6 +213,7 @@ TEST_F(Guides, LearnTheSharesOfUsefulPhotonsByCell)
     ASSERT_GT(total, 20);
     const std::vector<double> learned = probabilities();
     for (size_t i = 0; i < learned.size(); ++i)
-        EXPECT_NEAR(learned[i], gpu::kGuideUnguided * start[i] + (1 - gpu::kGuideUnguided) * scores[i] / total, 1e-6) << "cell " << i;
+        EXPECT_NEAR(learned[i], gpu::kGuideUnguided * start[i] + (1 - gpu::kGuideUnguided) * scores[i] / total, 1e-6)
+            << "cell " << i;
 }
 } // namespace
