@@ -58,6 +58,17 @@ std::unique_ptr<Cut> GiTest::cutOf(const SceneGpu& scene, const std::vector<gpu:
     return cut;
 }
 
+std::vector<gpu::Photon> GiTest::stored(const PhotonStage::Output& out)
+{
+    const auto slots = contents<gpu::Photon>(out.photons, out.slot_count);
+    const auto flags = contents<uint32_t>(out.flags, out.slot_count);
+    std::vector<gpu::Photon> photons;
+    for (uint32_t i = 0; i < out.slot_count; ++i)
+        if (flags[i] != 0)
+            photons.push_back(slots[i]);
+    return photons;
+}
+
 std::vector<gpu::Photon> GiTest::emit(const SceneGpu& scene, PhotonKind kind, const PhotonStage::Input& in)
 {
     const RayStage rays(device(), scene);
@@ -65,13 +76,7 @@ std::vector<gpu::Photon> GiTest::emit(const SceneGpu& scene, PhotonKind kind, co
     submit(scene, [&](Recorder& rec) { (void)stage.record(rec, rays, in); });
     std::optional<PhotonStage::Output> out;
     submit(scene, [&](Recorder& rec) { out.emplace(stage.record(rec, rays, in)); }); // again: nothing may be left over
-    const auto slots = contents<gpu::Photon>(out->photons, out->slot_count);
-    const auto flags = contents<uint32_t>(out->flags, out->slot_count);
-    std::vector<gpu::Photon> stored;
-    for (uint32_t i = 0; i < out->slot_count; ++i)
-        if (flags[i] != 0)
-            stored.push_back(slots[i]);
-    return stored;
+    return stored(*out);
 }
 
 Picture GiTest::renderGi(const SceneGpu& scene, const Camera& camera, const Settings& settings, uint32_t frame_count,

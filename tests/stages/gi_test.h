@@ -76,6 +76,8 @@ protected:
     static std::unique_ptr<PhotonMap> mapOf(const SceneGpu& scene, const std::vector<gpu::Photon>& photons);
     /// The cut of exactly these nodes.
     static std::unique_ptr<Cut> cutOf(const SceneGpu& scene, const std::vector<gpu::CutNode>& nodes);
+    /// The photons that a stage has stored.
+    static std::vector<gpu::Photon> stored(const PhotonStage::Output& out);
     /// The photons that a global or caustic emission stores.
     static std::vector<gpu::Photon> emit(const SceneGpu& scene, PhotonKind kind, const PhotonStage::Input& in);
 
