@@ -31,5 +31,5 @@ if [[ -n ${DISPLAY-}${WAYLAND_DISPLAY-} ]]; then
     echo "demo: no window could be had; rendering a picture instead"
 fi
 echo "demo: rendering $picture"
-$bin/lumicut-play $package --headless --mode reference --size 480x270 --spp 32 --output $picture
+$bin/lumicut-play $package --headless --size 480x270 --frames 64 --output $picture
 echo "demo: the picture is $PWD/$picture"
