@@ -263,6 +263,26 @@ VkDeviceMemory Device::allocate(const VkMemoryRequirements& needs, Placement pla
     return VK_NULL_HANDLE;
 }
 
+template <typename Record>
+void Device::submitOnce(Record&& record) const
+{
+    const VkCommandBufferAllocateInfo info{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
+                                           .commandPool = once_pool_,
+                                           .level = VK_COMMAND_BUFFER_LEVEL_PRIMARY,
+                                           .commandBufferCount = 1};
+    VkCommandBuffer commands;
+    vulkanCheck(vkAllocateCommandBuffers(device_, &info, &commands));
+    const VkCommandBufferBeginInfo begin{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
+                                         .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT};
+    vulkanCheck(vkBeginCommandBuffer(commands, &begin));
+    record(commands);
+    vulkanCheck(vkEndCommandBuffer(commands));
+    const VkSubmitInfo submit{.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO, .commandBufferCount = 1, .pCommandBuffers = &commands};
+    vulkanCheck(vkQueueSubmit(queue_, 1, &submit, VK_NULL_HANDLE));
+    vulkanCheck(vkQueueWaitIdle(queue_));
+    vkFreeCommandBuffers(device_, once_pool_, 1, &commands);
+}
+
 Buffer Device::buffer(std::string_view name, uint64_t bytes, Placement placement) const
 {
     Buffer buffer;
@@ -289,6 +309,8 @@ Buffer Device::buffer(std::string_view name, uint64_t bytes, Placement placement
         buffer.mapped_ = {static_cast<std::byte*>(pointer), size_t(bytes)};
     }
     nameObject(VK_OBJECT_TYPE_BUFFER, uint64_t(buffer.buffer_), name);
+    if (instance_.validates() && placement == Placement::kDevice)
+        submitOnce([&](VkCommandBuffer commands) { vkCmdFillBuffer(commands, buffer.handle(), 0, VK_WHOLE_SIZE, kUnwritten); });
     return buffer;
 }
 
@@ -303,26 +325,6 @@ Buffer Device::withTexels(Buffer buffer) const
                                       .range = VK_WHOLE_SIZE};
     vulkanCheck(vkCreateBufferView(device_, &info, nullptr, &buffer.texels_));
     return buffer;
-}
-
-template <typename Record>
-void Device::submitOnce(Record&& record) const
-{
-    const VkCommandBufferAllocateInfo info{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
-                                           .commandPool = once_pool_,
-                                           .level = VK_COMMAND_BUFFER_LEVEL_PRIMARY,
-                                           .commandBufferCount = 1};
-    VkCommandBuffer commands;
-    vulkanCheck(vkAllocateCommandBuffers(device_, &info, &commands));
-    const VkCommandBufferBeginInfo begin{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
-                                         .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT};
-    vulkanCheck(vkBeginCommandBuffer(commands, &begin));
-    record(commands);
-    vulkanCheck(vkEndCommandBuffer(commands));
-    const VkSubmitInfo submit{.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO, .commandBufferCount = 1, .pCommandBuffers = &commands};
-    vulkanCheck(vkQueueSubmit(queue_, 1, &submit, VK_NULL_HANDLE));
-    vulkanCheck(vkQueueWaitIdle(queue_));
-    vkFreeCommandBuffers(device_, once_pool_, 1, &commands);
 }
 
 Buffer Device::uploadBytes(std::string_view name, std::span<const std::byte> data) const

@@ -27,6 +27,10 @@ public:
     /// @param constants values of the kernel's specialization constants 0, 1, ...
     Kernel kernel(std::string_view name, std::span<const uint32_t> constants = {}) const;
 
+    /// What a word of new memory holds under validation: no number as a float, far too many as a count. Without this
+    /// a kernel that reads what nothing wrote is right as long as the memory happens to be zero.
+    static constexpr uint32_t kUnwritten = 0x7fc07fc0;
+
     /// Device-local storage for `count` elements (at least one), filled with zeroes only by Recorder::clear.
     /// Aborts when memory runs out; check canAllocate() before allocations that input decides.
     template <typename T>

@@ -10,7 +10,8 @@
 
 struct InstanceOptions
 {
-    bool validation = false;                     // core and synchronization validation; a message aborts
+    /// Core and synchronization validation; a message aborts. New memory then holds Device::kUnwritten.
+    bool validation = false;
     std::span<const char* const> extensions = {}; // what the window library asks for
 };
 
@@ -33,6 +34,7 @@ public:
 
     std::vector<DeviceInfo> devices() const;
     VkInstance handle() const { return state_->instance; }
+    bool validates() const { return state_->messenger != VK_NULL_HANDLE; }
     VkPhysicalDevice physicalDevice(uint32_t index) const { return state_->devices.at(index); }
 
 private:

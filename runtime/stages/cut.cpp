@@ -128,6 +128,7 @@ CutStage::Output CutStage::record(Recorder& rec, const RayStage& rays, const Pho
 void CutStage::recordProbes(Recorder& rec, const RayStage& rays, const Input& in) const
 {
     const gpu::ProbeParams params{.ray_count = in.probes, .seed = in.seed};
+    rays.reset(rec, probes_.size); // an empty cut starts no thread that would say so
     rec.runIndirect(probe_, size_, 0, params,
                     {{"Size", size_}, {"Nodes", nodes_}, {"Queue", probes_.size}, {"Rays", probes_.rays}});
     rays.closest(rec, probes_, hits_, in.seed);

@@ -12,7 +12,7 @@ layout(push_constant, scalar) uniform Params { ProbeParams params; };
 
 layout(set = 1, binding = 0, scalar) readonly buffer Size { QueueSize size; };
 layout(set = 1, binding = 1, scalar) readonly buffer Nodes { CutNode nodes[]; };
-layout(set = 1, binding = 2, scalar) writeonly buffer Queue { QueueSize queue; };
+layout(set = 1, binding = 2, scalar) writeonly buffer Queue { QueueSize queue; }; // set to zero before
 layout(set = 1, binding = 3, scalar) writeonly buffer Rays { Ray rays[]; };
 
 void main()
