@@ -20,12 +20,14 @@ struct uvec4 { uint x, y, z, w; };
 #define GPU_NAMESPACE_BEGIN namespace gpu {
 #define GPU_NAMESPACE_END }
 #define GPU_CONST inline constexpr
+#define GPU_FUNCTION inline
 #define GPU_SIZE(type, bytes) static_assert(sizeof(type) == (bytes), #type " layout changed")
 #define GPU_OFFSET(type, member, bytes) static_assert(offsetof(type, member) == (bytes), #type "." #member " has moved")
 #else
 #define GPU_NAMESPACE_BEGIN
 #define GPU_NAMESPACE_END
 #define GPU_CONST const
+#define GPU_FUNCTION
 #define GPU_SIZE(type, bytes)
 #define GPU_OFFSET(type, member, bytes)
 #endif

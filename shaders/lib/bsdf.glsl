@@ -3,6 +3,7 @@
 // Directions are local: z along the shading normal on the viewer's side, wo.z > 0. Functions only.
 #ifndef LIB_BSDF_GLSL
 #define LIB_BSDF_GLSL
+#include "shaders/lib/lobe_reflectance.h"
 #include "shaders/lib/math.glsl"
 #include "shaders/lib/surface.glsl"
 
@@ -101,17 +102,15 @@ vec3 diffuseReflectance(Bsdf b, float cosine)
     return diffuseColor(b) * (1.0 - maxComponent(b.f0 + (vec3(b.f90) - b.f0) * mean_rise));
 }
 
-/// The same of the rough reflection lobe (Karis 2014, "Physically Based Shading on Mobile"); 0 for a smooth one.
+/// The same of the rough reflection lobe; 0 for a smooth one.
 vec3 glossyReflectance(Bsdf b, float cosine)
 {
     if (!hasFeature(kFeatureSpecular) || b.smooth_specular)
         return vec3(0.0);
-    vec4 r = sqrt(b.alpha) * vec4(-1.0, -0.0275, -0.572, 0.022) + vec4(1.0, 0.0425, 1.04, -0.04);
-    float a = min(r.x * r.x, exp2(-9.28 * cosine)) * r.x + r.y;
-    vec2 scale = vec2(-1.04, 1.04) * a + r.zw;
-    vec3 f0 = mix(b.f0, b.base_color, b.metallic);
-    float f90 = mix(b.f90, 1.0, b.metallic);
-    return clamp(f0 * scale.x + f90 * scale.y, 0.0, 1.0);
+    float roughness = sqrt(b.alpha);
+    return clamp(mix(b.f0, b.base_color, b.metallic) * lobeScale(roughness, cosine) +
+                     mix(b.f90, 1.0, b.metallic) * lobeBias(roughness, cosine),
+                 0.0, 1.0);
 }
 
 struct LobeProbabilities { float reflection, diffuse, transmission; };

@@ -1,12 +1,12 @@
 // Rough reflection, by rays and by spherical harmonics: their numbers against formulas, and no seam between them.
 #include "runtime/stages/gather.h"
 #include "runtime/stages/glossy.h"
-#include "runtime/stages/glossy_lobe.h"
 #include "runtime/stages/interpolate.h"
 #include "shaders/lib/terms.h"
 #include "tests/stages/closed_form.h"
 #include "tests/stages/gi_test.h"
 #include "tests/stages/gltf_brdf.h"
+#include "tests/stages/lobe_numbers.h"
 
 #include <array>
 #include <cmath>
@@ -22,96 +22,7 @@ nlohmann::json plastic(double roughness)
              {{"baseColorFactor", {0.5, 0.5, 0.5, 1}}, {"metallicFactor", 0}, {"roughnessFactor", roughness}}}};
 }
 
-double specularAlbedo(double roughness, double cosine)
-{
-    return directionalAlbedo({.base_color = {0, 0, 0}, .roughness = roughness}, cosine)[0];
-}
-
-constexpr double kNormalReflectance = 0.04; // of ior 1.5
-double reflectanceOf(const gpu::GlossyLobe& lobe)
-{
-    return kNormalReflectance * lobe.scale + lobe.bias;
-}
-
-double tableRoughness(uint32_t r)
-{
-    return gpu::kHarmonicsFrom + (1.0 - gpu::kHarmonicsFrom) * r / (gpu::kLobeRoughnesses - 1);
-}
-double tableCosine(uint32_t c)
-{
-    return double(c) / (gpu::kLobeCosines - 1);
-}
-
-// ---- The lobe's numbers
-// --------------------------------------------------------------------------------------------------
-
-TEST(GlossyLobe, ReflectsAsMuchAsTheBrdf)
-{
-    double worst = 0;
-    for (const double roughness : {0.4, 0.5, 0.6, 0.8, 1.0})
-        for (const double cosine : {0.05, 0.2, 0.5, 0.8, 1.0})
-        {
-            const double want = specularAlbedo(roughness, cosine);
-            worst = std::max(worst, std::abs(reflectanceOf(glossyLobe(roughness, cosine)) / want - 1));
-        }
-    fmt::print("  largest error of the quadrature {:.2e}\n", worst);
-    EXPECT_LE(worst, 0.01); // 32 strata each way, some cut by the horizon
-}
-
-/// Coefficients of bands 0 to 3 of the zonal function.
-std::array<double, 4> zonalOf(const gpu::GlossyLobe& lobe)
-{
-    const double a = lobe.concentration;
-    return {1, 3 * a, 5 * std::pow(a, 3), 7 * std::pow(a, 6)};
-}
-
-/// What even light of radiance 1 makes of it, over that of a constant function.
-double evenAnswer(const gpu::GlossyLobe& lobe)
-{
-    const double mu = lobe.height;
-    return std::max(0.05, 1 + zonalOf(lobe)[1] * 2 / 3 * mu + zonalOf(lobe)[2] / 4 * (1.5 * mu * mu - 0.5));
-}
-
-/// Mean direction of the light that a lobe takes from even light, by the judge's BRDF: a metal that reflects all there
-/// is. Allowed: what a grid of 1/64 of a right angle and 1/96 of the concentration leaves, and as much where no such
-/// lobe leans as far towards the horizon as the BRDF does.
-TEST(GlossyLobe, TakesLightFromWhereTheBrdfDoes)
-{
-    constexpr int kSteps = 256;
-    for (const double roughness : {0.4, 0.5, 0.6, 0.8, 1.0})
-        for (const double cosine : {0.3, 0.6, 0.9, 1.0})
-        {
-            const GltfMaterial material{.base_color = {1, 1, 1}, .metallic = 1, .roughness = roughness};
-            const gpu::GlossyLobe lobe = glossyLobe(roughness, cosine);
-            const auto zonal = zonalOf(lobe);
-            const Double3 d{std::sqrt(1 - double(lobe.height) * lobe.height), 0, lobe.height};
-            Double3 want, got;
-            double all_wanted = 0, all = 0, negative = 0;
-            for (int i = 0; i < kSteps; ++i)
-                for (int k = 0; k < kSteps; ++k)
-                {
-                    const double theta = kPi / 2 * (i + 0.5) / kSteps, phi = 2 * kPi * (k + 0.5) / kSteps;
-                    const Double3 w{std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)};
-                    const double brdf =
-                        gltfBrdf(material, {-std::sqrt(1 - cosine * cosine), 0, cosine}, {w.x, w.y, w.z})[0];
-                    const double x = dot(w, d), solid_angle = w.z * std::sin(theta);
-                    const double f =
-                        1 + zonal[1] * x + zonal[2] * (1.5 * x * x - 0.5) + zonal[3] * (2.5 * x * x * x - 1.5 * x);
-                    want = want + brdf * solid_angle * w;
-                    got = got + f * solid_angle * w;
-                    all_wanted += brdf * solid_angle;
-                    all += f * solid_angle;
-                    negative -= std::min(0.0, f) * solid_angle;
-                }
-            fmt::print("  roughness {:.2f}, cosine {:.1f}: off by {:.3f}, {:.1f} % negative\n", roughness, cosine,
-                       length((1 / all) * got - (1 / all_wanted) * want), 100 * negative / all);
-            EXPECT_LE(length((1 / all) * got - (1 / all_wanted) * want), 2 * (kPi / 2 / 64 + 1.0 / 96))
-                << roughness << ' ' << cosine;
-        }
-}
-
-// ---- The light of a sample by direction
-// ----------------------------------------------------------------------------------
+// ---- The light of a sample by direction -----------------------------------------------------------------------------
 
 /// B_lm of bands 1 to 3, in the order of lib/harmonics.glsl.
 std::array<double, 15> basis(Double3 d)
@@ -309,8 +220,7 @@ TEST_F(Glossy, GatheringProjectsTheLightByDirection)
     }
 }
 
-// ---- Reflection by harmonics
-// ---------------------------------------------------------------------------------------------
+// ---- Reflection by harmonics ----------------------------------------------------------------------------------------
 
 class GlossyView : public Glossy
 {
@@ -497,8 +407,7 @@ TEST_F(GlossyView, OfEvenLightByRaysIsTheDirectionalReflectance)
     }
 }
 
-// ---- The frame
-// -----------------------------------------------------------------------------------------------------------
+// ---- The frame ------------------------------------------------------------------------------------------------------
 
 class GlossyRamp : public Glossy
 {
