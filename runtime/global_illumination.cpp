@@ -11,6 +11,9 @@ constexpr uint32_t kCausticBounces = 2; // photons a caustic path may leave: one
 
 constexpr float kGuideReach = 0.05f; // of the scene's diagonal: how far from their camera guided photons serve
 
+/// What reflects this much sends a glossy ray from every pixel: a standing picture can wait for less noise.
+constexpr float kSureInMotion = 0.2f, kSureStanding = 0.05f;
+
 constexpr float kSearchRadius = 0.1f; // of the scene's diagonal: how far the nearest sample or cut node may be
 
 /// Progressive photon mapping: r_n^2 / r_0^2 = prod (i + 2/3) / (i + 1) over the n frames before (Hachisuka et al.
@@ -310,6 +313,7 @@ void GlobalIllumination::recordGlossy(const Frame& frame, const CutStage::Output
                                 .first_sample = frame.index,
                                 .specular_depth = chainDepth(frame.settings),
                                 .seed = frame.camera.seed,
+                                .sure_reflectance = frame.index == 0 ? kSureInMotion : kSureStanding,
                                 .shared = reflectsByHarmonics(frame)};
     if (in.shared)
         glossy_.recordHarmonics(frame.rec, *samples, gather_.harmonics(), in);

@@ -22,7 +22,8 @@ void GlossyStage::record(Recorder& rec, const RayStage& rays, const CutStage::Ou
                              .seed = in.seed,
                              .depth = 0,
                              .depth_limit = in.specular_depth,
-                             .shared_ = in.shared};
+                             .shared_ = in.shared,
+                             .sure_reflectance = in.sure_reflectance};
     rays.reset(rec, queue_.size);
     rec.run(generate_, in.point_count, params,
             {{"Points", in.points},

@@ -19,6 +19,7 @@ public:
         uint32_t first_sample;
         uint32_t specular_depth; // most delta events of a ray
         uint32_t seed;
+        float sure_reflectance; // what reflects this much sends a ray from every pixel, what reflects less a part of them
         bool shared = false; // whether shares() says what part of the light is there already
     };
     void record(Recorder& rec, const RayStage& rays, const CutStage::Output& cut, const Input& in) const;

@@ -16,8 +16,6 @@ layout(set = 1, binding = 2, scalar) writeonly buffer Rays { Ray rays[]; };
 layout(set = 1, binding = 3, scalar) writeonly buffer States { GatherState states[]; };
 layout(set = 1, binding = 4, scalar) readonly buffer Shares { float shares[]; }; // of the light that is there already
 
-const float kSureReflectance = 0.2; // from here on every pixel sends its ray
-
 void main()
 {
     uint path = gl_GlobalInvocationID.x;
@@ -36,7 +34,7 @@ void main()
     LobeProbabilities p = lobeProbabilities(b, wo.z);
     float specular = p.reflection + p.transmission;
     vec3 reflected = glossyReflectance(b, wo.z) + belowColor(b, wo.z) * b.transmission;
-    float survival = clamp(missing * luminance(reflected * point.throughput) / kSureReflectance, 0.05, 1.0);
+    float survival = clamp(missing * luminance(reflected * point.throughput) / params.sure_reflectance, 0.05, 1.0);
     Sampler sampler_ = vertexSampler(path, point.depth + 1u, params.point_count, params.first_sample, params.seed);
     sampler_.dimension += kVertexDimensions - 2u; // those before are direct light's
     vec2 u = nextPair(sampler_), choice = nextPair(sampler_);
