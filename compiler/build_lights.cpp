@@ -1,6 +1,6 @@
 #include "compiler/build_lights.h"
 
-#include "compiler/alias_table.h"
+#include "format/alias_table.h"
 #include "compiler/caustic_targets.h"
 #include "compiler/emission_average.h"
 #include "compiler/environment.h"

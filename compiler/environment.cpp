@@ -1,6 +1,6 @@
 #include "compiler/environment.h"
 
-#include "compiler/alias_table.h"
+#include "format/alias_table.h"
 #include "compiler/environment_files.h"
 #include "compiler/vector_math.h"
 #include "format/check.h"

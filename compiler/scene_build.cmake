@@ -4,7 +4,6 @@ find_package(OpenEXR REQUIRED)
 find_path(STB_INCLUDE_DIR stb_image.h PATH_SUFFIXES stb REQUIRED)
 
 add_library(lumicut_scene_build STATIC
-    ${CMAKE_CURRENT_LIST_DIR}/alias_table.cpp
     ${CMAKE_CURRENT_LIST_DIR}/build_bvh.cpp
     ${CMAKE_CURRENT_LIST_DIR}/bvh_balance.cpp
     ${CMAKE_CURRENT_LIST_DIR}/bvh_collapse.cpp
@@ -16,4 +15,4 @@ add_library(lumicut_scene_build STATIC
     ${CMAKE_CURRENT_LIST_DIR}/environment_exr.cpp
     ${CMAKE_CURRENT_LIST_DIR}/environment_hdr.cpp)
 target_include_directories(lumicut_scene_build SYSTEM PRIVATE ${STB_INCLUDE_DIR})
-target_link_libraries(lumicut_scene_build PUBLIC lumicut_options fmt::fmt PRIVATE embree OpenEXR::OpenEXR)
+target_link_libraries(lumicut_scene_build PUBLIC lumicut_options lumicut_format fmt::fmt PRIVATE embree OpenEXR::OpenEXR)

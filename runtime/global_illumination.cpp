@@ -142,6 +142,7 @@ void GlobalIllumination::recordDirect(const Frame& frame) const
                     .radiance = frame.radiance,
                     .point_count = frame.pixel_count,
                     .light_sample_count = frame.settings.direct_samples,
+                    .candidate_count = frame.settings.direct_candidates,
                     .first_sample = frame.index,
                     .seed = frame.camera.seed});
 }

@@ -80,6 +80,7 @@ void Renderer::record(Recorder& rec, const Camera& camera, const Settings& setti
                      .radiance = primary.radiance,
                      .point_count = pixel_count,
                      .light_sample_count = settings.direct_samples,
+                     .candidate_count = settings.direct_candidates,
                      .first_sample = view.first_sample,
                      .seed = seed});
     resolve_.accumulate(rec, primary.radiance, pixel_count, 1);

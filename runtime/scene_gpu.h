@@ -11,6 +11,10 @@ struct LightShare // of the scene's power
 {
     uint32_t kind; // gpu::kLight*
     float pmf;
+
+    /// Arrives from so far away that its power says nothing of how much of it is seen; else it is a lamp.
+    bool isBeam() const { return kind == gpu::kLightDirectional || kind == gpu::kLightEnvironment; }
+    bool isPunctual() const { return kind < gpu::kLightTriangle; }
 };
 
 class SceneGpu

@@ -16,7 +16,8 @@ namespace
 {
 constexpr std::array kKnobs{
     Knob{"specular_depth", &Settings::specular_depth, 0, 64, "", "mirror and glass events followed from the eye"},
-    Knob{"direct_samples", &Settings::direct_samples, 1, 64, "", "shadow rays a pixel and frame"},
+    Knob{"direct_samples", &Settings::direct_samples, 1, 64, "", "shadow rays a pixel and frame, to beams and lamps each"},
+    Knob{"direct_candidates", &Settings::direct_candidates, 1, 64, "", "light samples of which one gets the shadow ray"},
     Knob{"photons.count", &Settings::photon_count, 256, 4e6, "", "photon paths emitted a frame"},
     Knob{"photons.bounces", &Settings::photon_bounces, 1, 64, "", "photons a path may leave at surfaces that scatter"},
     Knob{"photons.nearest", &Settings::density_photons, 8, 1024, "", "photons of a density estimate"},
@@ -87,6 +88,7 @@ Result<Settings> presetSettings(std::string_view name)
     Settings settings;
     if (name == "preview")
     {
+        settings.direct_candidates = 4;
         settings.photon_count = 3000;
         settings.photon_bounces = 6;
         settings.density_photons = 16;

@@ -18,6 +18,7 @@ struct Settings
 {
     uint32_t specular_depth = 8;
     uint32_t direct_samples = 1;
+    uint32_t direct_candidates = 8;
     uint32_t photon_count = 50000; // paths
     uint32_t photon_bounces = 12;
     uint32_t density_photons = 25;

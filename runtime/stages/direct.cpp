@@ -1,14 +1,19 @@
 #include "runtime/stages/direct.h"
 
+namespace
+{
+constexpr uint32_t kLampSeed = 0x9e3779b9; // lamps are sampled independently of beams
+}
+
 DirectStage::DirectStage(const Device& device, const SceneGpu& scene, uint32_t max_pixels)
-    : sample_(device.kernel("direct/sample", scene.constants())),
+    : lights_(groupLights(scene.lightShares())), sample_(device.kernel("direct/sample", scene.constants())),
       emitted_(device.kernel("direct/emitted", scene.constants())),
       emitter_queue_(device, "direct.emitter_queue", max_pixels),
       shadow_size_(device.array<gpu::QueueSize>("direct.shadow_size", 1)),
       shadow_rays_(device.array<gpu::ShadowRay>("direct.shadow_rays", max_pixels)),
       emitter_rays_(device.array<gpu::EmitterRay>("direct.emitter_rays", max_pixels)),
       hits_(device.texelArray<gpu::Hit>("direct.hits", max_pixels)),
-      has_area_lights_(scene.hasAreaLights())
+      picks_(device.upload<gpu::LightPick>("direct.picks", lights_.picks)), has_area_lights_(scene.hasAreaLights())
 {
 }
 
@@ -16,26 +21,50 @@ void DirectStage::record(Recorder& rec, const RayStage& rays, const Input& in) c
 {
     const auto scope = rec.scope("direct");
     for (uint32_t i = 0; i < in.light_sample_count; ++i)
+        recordSample(rec, rays, in, i);
+}
+
+void DirectStage::recordSample(Recorder& rec, const RayStage& rays, const Input& in, uint32_t light_sample) const
+{
+    gpu::EmittedParams emitted{
+        .seed = traceSeed(in.seed, in.first_sample * in.light_sample_count + light_sample, ~0u)};
+    rays.reset(rec, emitter_queue_.size);
+    for (const LightGroup& group : lights_.groups)
     {
+        const bool last = &group == &lights_.groups.back();
+        const uint32_t candidates = group.one_place ? 1 : in.candidate_count;
+        (group.beams ? emitted.beam_density : emitted.lamp_density) = 1 / group.share;
         const gpu::DirectParams params{.point_count = in.point_count,
                                        .first_sample = in.first_sample,
                                        .seed = in.seed,
-                                       .light_sample = i,
-                                       .light_sample_count = in.light_sample_count};
-        const gpu::RaysParams trace{traceSeed(in.seed, in.first_sample * in.light_sample_count + i, ~0u)};
+                                       .light_sample = light_sample,
+                                       .light_sample_count = in.light_sample_count,
+                                       .light_seed = in.seed + (group.beams ? 0u : kLampSeed),
+                                       .first_pick = group.first_pick,
+                                       .pick_count = group.pick_count,
+                                       .share = group.share,
+                                       .candidate_count = candidates,
+                                       .asks_emitters = last && has_area_lights_};
         rays.reset(rec, shadow_size_);
-        rays.reset(rec, emitter_queue_.size);
         rec.run(sample_, in.point_count, params,
-                {{"Points", in.points}, {"ShadowQueue", shadow_size_}, {"ShadowRays", shadow_rays_},
-                 {"EmitterQueue", emitter_queue_.size}, {"Rays", emitter_queue_.rays}, {"EmitterRays", emitter_rays_}});
+                {{"Points", in.points},
+                 {"ShadowQueue", shadow_size_},
+                 {"ShadowRays", shadow_rays_},
+                 {"EmitterQueue", emitter_queue_.size},
+                 {"Rays", emitter_queue_.rays},
+                 {"EmitterRays", emitter_rays_},
+                 {"Picks", picks_}});
         rays.close(rec, shadow_size_);
         rays.visible(rec, shadow_size_, shadow_rays_, in.radiance);
-        if (!has_area_lights_)
-            continue;
-        rays.close(rec, emitter_queue_.size);
-        rays.closest(rec, emitter_queue_, hits_, trace.seed);
-        rec.runIndirect(emitted_, emitter_queue_.size, 0, trace,
-                        {{"EmitterQueue", emitter_queue_.size}, {"Rays", emitter_queue_.rays}, {"Hits", hits_},
-                         {"EmitterRays", emitter_rays_}, {"Radiance", in.radiance}});
     }
+    if (!has_area_lights_)
+        return;
+    rays.close(rec, emitter_queue_.size);
+    rays.closest(rec, emitter_queue_, hits_, emitted.seed);
+    rec.runIndirect(emitted_, emitter_queue_.size, 0, emitted,
+                    {{"EmitterQueue", emitter_queue_.size},
+                     {"Rays", emitter_queue_.rays},
+                     {"Hits", hits_},
+                     {"EmitterRays", emitter_rays_},
+                     {"Radiance", in.radiance}});
 }

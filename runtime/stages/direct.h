@@ -1,5 +1,6 @@
-// Direct light at the shading points: shadow rays to sampled lights, combined with BSDF-sampled rays.
+// Direct light at the shading points: shadow rays to sampled beams and lamps, combined with BSDF-sampled rays.
 #pragma once
+#include "runtime/light_groups.h"
 #include "runtime/stages/rays.h"
 #include "shaders/direct/direct.h"
 
@@ -13,15 +14,19 @@ public:
         const Buffer& points;   // gpu::ShadingPoint[point_count]
         const Buffer& radiance; // vec3[point_count], grows by the direct light
         uint32_t point_count;
-        uint32_t light_sample_count; // per point
+        uint32_t light_sample_count; // per point, for beams and lamps each
+        uint32_t candidate_count;    // light samples of which one gets its shadow ray
         uint32_t first_sample;
         uint32_t seed;
     };
     void record(Recorder& rec, const RayStage& rays, const Input& in) const;
 
 private:
+    void recordSample(Recorder& rec, const RayStage& rays, const Input& in, uint32_t light_sample) const;
+
+    LightGroups lights_;
     Kernel sample_, emitted_;
     RayQueue emitter_queue_;
-    Buffer shadow_size_, shadow_rays_, emitter_rays_, hits_;
+    Buffer shadow_size_, shadow_rays_, emitter_rays_, hits_, picks_;
     bool has_area_lights_;
 };

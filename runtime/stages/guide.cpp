@@ -6,11 +6,6 @@ namespace
 {
 constexpr uint32_t kManyLights = 16; // from here on some of them may be out of sight
 
-bool isBeam(uint32_t kind)
-{
-    return kind == gpu::kLightDirectional || kind == gpu::kLightEnvironment;
-}
-
 struct LightGroups
 {
     gpu::GuideGroups groups{};
@@ -25,7 +20,7 @@ LightGroups groupsOf(std::span<const LightShare> lights)
     double others = 0;
     for (uint32_t i = 0; i < lights.size(); ++i)
     {
-        if (isBeam(lights[i].kind) && beams < gpu::kGuideBeams)
+        if (lights[i].isBeam() && beams < gpu::kGuideBeams)
         {
             result.groups.beam_lights[beams] = i;
             result.groups.shares[beams++] = lights[i].pmf;
@@ -45,7 +40,7 @@ bool GuideStage::helps(const SceneGpu& scene)
 {
     const auto lights = scene.lightShares();
     return lights.size() >= kManyLights ||
-           std::ranges::any_of(lights, [](const LightShare& l) { return isBeam(l.kind); });
+           std::ranges::any_of(lights, &LightShare::isBeam);
 }
 
 GuideStage::GuideStage(const Device& device, const SceneGpu& scene, uint32_t max_paths)

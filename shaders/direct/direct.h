@@ -5,15 +5,38 @@
 
 GPU_NAMESPACE_BEGIN
 
+// Lights come in two groups: a sun's power is of another kind than a lamp's, and where both shine each gets its own shadow ray.
+struct LightPick // Walker's alias method within a group
+{
+    uint light;      // taken where a second uniform number < threshold
+    float threshold;
+    uint otherwise;  // light taken else
+};
+GPU_SIZE(LightPick, 12);
+
 struct DirectParams
 {
     uint point_count;
     uint first_sample; // index of the pixel's sample
     uint seed;
     uint light_sample;       // which of light_sample_count this dispatch takes
-    uint light_sample_count; // light samples a shading point; each contributes 1 / light_sample_count
+    uint light_sample_count; // light samples a shading point and group; each contributes 1 / light_sample_count
+    uint light_seed;         // the same for all dispatches of a group
+    uint first_pick;         // the group's part of the picks
+    uint pick_count;
+    float share;             // of the group, of all lights' pmf
+    uint candidate_count;    // light samples of which one gets the shadow ray
+    uint asks_emitters;      // 1: this dispatch also sends the BSDF-sampled rays
 };
-GPU_SIZE(DirectParams, 20);
+GPU_SIZE(DirectParams, 44);
+
+struct EmittedParams
+{
+    uint seed;
+    float beam_density; // with which one candidate finds a direction, over the density of all lights together
+    float lamp_density;
+};
+GPU_SIZE(EmittedParams, 12);
 
 struct EmitterRay // what a BSDF-sampled ray is worth if it ends on an emitter
 {

@@ -10,7 +10,7 @@
 // thread order.
 
 layout(local_size_x = kRaysGroupSize) in;
-layout(push_constant, scalar) uniform Params { RaysParams params; };
+layout(push_constant, scalar) uniform Params { EmittedParams params; };
 
 layout(set = 1, binding = 0, scalar) readonly buffer EmitterQueue { QueueSize emitter_queue; };
 layout(set = 1, binding = 1) uniform usamplerBuffer Rays;
@@ -26,7 +26,7 @@ vec3 emittedLight(Hit hit, vec3 direction, float pdf)
     if (hit.slot == kNone)
     {
         vec3 light = environmentRadiance(direction);
-        return light == vec3(0.0) ? light : light * misWeight(pdf, environmentPdf(direction));
+        return light == vec3(0.0) ? light : light * misWeight(pdf, params.beam_density * environmentPdf(direction));
     }
     uint light = loadTriangle(loadBvhTriangle(hit.slot).triangle).light;
     if (light == kNone)
@@ -34,7 +34,7 @@ vec3 emittedLight(Hit hit, vec3 direction, float pdf)
     Surface s = surfaceAt(hit.slot, hit.barycentrics, direction);
     if (!emits(s))
         return vec3(0.0);
-    float light_pdf = trianglePdf(light, s.area, hit.t, abs(dot(s.geometric_normal, direction)));
+    float light_pdf = params.lamp_density * trianglePdf(light, s.area, hit.t, abs(dot(s.geometric_normal, direction)));
     return surfaceEmission(s.material, s.uv0, s.uv1) * misWeight(pdf, light_pdf);
 }
 

@@ -5,8 +5,10 @@
 #include "shaders/lib/lights.glsl"
 #include "shaders/lib/path.glsl"
 
-// Asks for direct light at every shading point twice: a shadow ray to a light chosen by power, and a ray chosen by the
-// BSDF that may end on an emitter (emitted.comp weighs it). One thread per point; queues hold one ray a point at most.
+// Asks for direct light at every shading point: a shadow ray to a light of the group, and, once for all groups, a ray chosen
+// by the BSDF that may end on an emitter (emitted.comp weighs it). The light is chosen among candidates picked by power, each
+// as often as it would light the point if nothing were in the way (Talbot et al. 2005, "Importance Resampling for Global
+// Illumination"). One thread per point; queues hold one ray a point at most.
 
 layout(local_size_x = kRaysGroupSize) in;
 layout(push_constant, scalar) uniform Params { DirectParams params; };
@@ -17,6 +19,31 @@ layout(set = 1, binding = 2, scalar) writeonly buffer ShadowRays { ShadowRay sha
 layout(set = 1, binding = 3, scalar) buffer EmitterQueue { QueueSize emitter_queue; };
 layout(set = 1, binding = 4, scalar) writeonly buffer Rays { Ray rays[]; };
 layout(set = 1, binding = 5, scalar) writeonly buffer EmitterRays { EmitterRay emitter_rays[]; };
+layout(set = 1, binding = 6, scalar) readonly buffer Picks { LightPick picks[]; };
+
+/// Picks a light of the group by power and a point or direction on it.
+LightSample sampleGroup(vec3 point, Sampler s)
+{
+    LightDraws draws = nextLightDraws(s);
+    LightPick pick = picks[params.first_pick + toIndex(draws.pick.x, params.pick_count)];
+    LightSample light =
+        sampleLightAt(toUnitFloat(draws.pick.y) < pick.threshold ? pick.light : pick.otherwise, point, draws);
+    light.weight *= params.share;
+    light.pdf /= params.share;
+    return light;
+}
+
+/// What the light sends through the BSDF if nothing is in the way, over the candidate's density. Against the BSDF's ray it is
+/// weighed as one sample, however many candidates there are: where the BSDF finds the light better, it keeps its say.
+vec3 unshadowed(Surface s, Bsdf b, mat3 frame, vec3 wo, LightSample light)
+{
+    vec3 wi = light.wi * frame;
+    if (light.weight == vec3(0.0) || !sidesAgree(s, light.wi, wi.z))
+        return vec3(0.0);
+    BsdfValue f = evaluateBsdf(b, wo, wi);
+    float mis = light.pdf > 0.0 ? misWeight(light.pdf, f.pdf) : 1.0;
+    return (f.diffuse + f.specular) * abs(wi.z) * light.weight * mis;
+}
 
 void main()
 {
@@ -31,24 +58,41 @@ void main()
     mat3 frame = frameAround(s.normal);
     vec3 wo = -point.direction * frame;
     uint index = params.first_sample * params.light_sample_count + params.light_sample;
-    Sampler sampler_ = vertexSampler(path, point.depth + 1u, params.point_count, index, params.seed);
     vec3 throughput = point.throughput / float(params.light_sample_count);
+    Sampler bsdf_sampler = vertexSampler(path, point.depth + 1u, params.point_count, index, params.seed);
+    bsdf_sampler.dimension += kLightPairs;
+    vec2 u = nextPair(bsdf_sampler), choice = nextPair(bsdf_sampler);
 
-    LightSample light = sampleLight(s.position, sampler_);
-    vec3 wi = light.wi * frame;
-    if (light.weight != vec3(0.0) && sidesAgree(s, light.wi, wi.z))
+    LightSample chosen = kNoLight;
+    vec3 carried = vec3(0.0);
+    float sum = 0.0, draw = choice.y;
+    for (uint k = 0u; k < params.candidate_count; ++k)
     {
-        BsdfValue f = evaluateBsdf(b, wo, wi);
-        vec3 carried = throughput * (f.diffuse + f.specular) * abs(wi.z) * light.weight;
-        if (light.pdf > 0.0)
-            carried *= misWeight(light.pdf, f.pdf);
-        if (carried != vec3(0.0))
-            shadow_rays[atomicAdd(shadow_queue.count, 1u)] = ShadowRay(shadowRay(s, light, path), carried);
+        LightSample light = sampleGroup(s.position, vertexSampler(path, point.depth + 1u, params.point_count,
+                                                                  index * params.candidate_count + k, params.light_seed));
+        vec3 candidate = throughput * unshadowed(s, b, frame, wo, light);
+        float weight = luminance(candidate);
+        if (!(weight > 0.0))
+            continue;
+        sum += weight;
+        float kept = 1.0 - weight / sum; // with this probability the choice so far stays; one draw serves for all
+        if (draw < kept)
+            draw /= kept;
+        else
+        {
+            draw = (draw - kept) / (1.0 - kept);
+            chosen = light;
+            carried = candidate;
+        }
     }
+    if (sum > 0.0)
+        shadow_rays[atomicAdd(shadow_queue.count, 1u)] =
+            ShadowRay(shadowRay(s, chosen, path), carried * (sum / (luminance(carried) * float(params.candidate_count))));
 
-    vec2 u = nextPair(sampler_);
-    BsdfSample next = sampleBsdf(b, wo, nextPair(sampler_).x, u);
-    wi = frame * next.wi;
+    if (params.asks_emitters == 0u)
+        return;
+    BsdfSample next = sampleBsdf(b, wo, choice.x, u);
+    vec3 wi = frame * next.wi;
     if (next.pdf == 0.0 || next.weight == vec3(0.0) || !sidesAgree(s, wi, next.wi.z))
         return;
     uint slot = atomicAdd(emitter_queue.count, 1u);

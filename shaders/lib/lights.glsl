@@ -124,27 +124,47 @@ LightSample sampleTriangle(Light light, uint index, vec3 point, vec2 u)
     return LightSample(wi, distance, offsetOrigin(position, towards), emission / pdf, pdf);
 }
 
-/// Picks a light by power and a point or direction on it. Uses three pairs of the sampler, whatever the light.
-LightSample sampleLight(vec3 point, inout Sampler s)
+const uint kLightPairs = 3u; // of the sampler, that a light sample uses up
+
+/// What a light sample is made of: three pairs of the sampler, whatever the light.
+struct LightDraws
 {
-    uvec2 pick = nextBits(s);
-    vec2 u = nextPair(s);
-    uvec2 texel_pick = uvec2(0u);
+    uvec2 pick;       // of the light
+    vec2 u;           // place or direction
+    uvec2 texel_pick; // of the environment's texel
+};
+
+LightDraws nextLightDraws(inout Sampler s)
+{
+    LightDraws draws = LightDraws(nextBits(s), nextPair(s), uvec2(0u));
     if (hasFeature(kFeatureEnvironment))
-        texel_pick = nextBits(s);
+        draws.texel_pick = nextBits(s);
     else
         ++s.dimension;
-    if (scene.light_count == 0u)
-        return kNoLight;
-    uint i = toIndex(pick.x, scene.light_count);
-    if (toUnitFloat(pick.y) >= light_aliases[i].threshold)
-        i = light_aliases[i].alias;
+    return draws;
+}
+
+/// A point or direction on light i, as if it had been picked with its pmf.
+LightSample sampleLightAt(uint i, vec3 point, LightDraws draws)
+{
     Light light = loadLight(i);
     if (hasFeature(kFeatureEnvironment) && light.kind == kLightEnvironment)
-        return sampleEnvironment(light.pmf, texel_pick, u);
+        return sampleEnvironment(light.pmf, draws.texel_pick, draws.u);
     if (hasFeature(kFeatureTriangleLights) && (light.kind == kLightTriangle || light.kind == kLightTriangleTwoSided))
-        return sampleTriangle(light, i, point, u);
+        return sampleTriangle(light, i, point, draws.u);
     return hasFeature(kFeaturePunctualLights) ? samplePunctual(light, point) : kNoLight;
+}
+
+/// Picks a light by power and a point or direction on it.
+LightSample sampleLight(vec3 point, inout Sampler s)
+{
+    LightDraws draws = nextLightDraws(s);
+    if (scene.light_count == 0u)
+        return kNoLight;
+    uint i = toIndex(draws.pick.x, scene.light_count);
+    if (toUnitFloat(draws.pick.y) >= light_aliases[i].threshold)
+        i = light_aliases[i].alias;
+    return sampleLightAt(i, point, draws);
 }
 
 /// Multiple importance sampling, power heuristic with exponent 2 (Veach & Guibas 1995).

@@ -1,4 +1,4 @@
-#include "compiler/alias_table.h"
+#include "format/alias_table.h"
 
 #include "format/check.h"
 

@@ -1,0 +1,32 @@
+#include "runtime/light_groups.h"
+
+#include "format/alias_table.h"
+
+#include <numeric>
+
+LightGroups groupLights(std::span<const LightShare> lights)
+{
+    LightGroups result;
+    for (const bool beams : {true, false})
+    {
+        std::vector<uint32_t> members;
+        std::vector<double> weights;
+        for (uint32_t i = 0; i < lights.size(); ++i)
+            if (lights[i].isBeam() == beams && lights[i].pmf > 0)
+            {
+                members.push_back(i);
+                weights.push_back(lights[i].pmf);
+            }
+        if (members.empty())
+            continue;
+        result.groups.push_back({.beams = beams,
+                                 .first_pick = uint32_t(result.picks.size()),
+                                 .pick_count = uint32_t(members.size()),
+                                 .share = float(std::accumulate(weights.begin(), weights.end(), 0.0)),
+                                 .one_place = members.size() == 1 && lights[members[0]].isPunctual()});
+        const auto table = buildAliasTable(weights);
+        for (size_t i = 0; i < members.size(); ++i)
+            result.picks.push_back({members[i], table[i].threshold, members[table[i].alias]});
+    }
+    return result;
+}

@@ -1,0 +1,24 @@
+// Lights parted into beams and lamps, each with a table to pick from: direct light asks both.
+#pragma once
+#include "runtime/scene_gpu.h"
+#include "shaders/direct/direct.h"
+
+#include <vector>
+
+struct LightGroup
+{
+    bool beams;          // directional lights and environments; else lamps
+    uint32_t first_pick; // its part of LightGroups::picks
+    uint32_t pick_count; // lights
+    float share;         // of all lights' pmf, > 0
+    bool one_place;      // a single punctual light: each sample of it is the same
+};
+
+struct LightGroups
+{
+    std::vector<LightGroup> groups; // that have a light: none to two
+    std::vector<gpu::LightPick> picks;
+};
+
+/// Within a group lights are picked by their share of the group's pmf. Lights with no share are in no group.
+LightGroups groupLights(std::span<const LightShare> lights);
