@@ -33,10 +33,10 @@ Status playHeadless(const PlayerOptions& options)
     const auto opened = openScene(options, {}, statistics);
     if (!opened)
         return opened.error();
-    if (const Status status = Renderer::checkSize(*opened->device, options.width, options.height, options.mode, opened->settings); !status)
+    std::optional<Renderer> renderer;
+    if (const Status status = makeRenderer(renderer, *opened, options.mode, options.width, options.height, opened->settings); !status)
         return status;
-    Renderer renderer(*opened->device, *opened->scene, options.mode, options.width, options.height, opened->settings);
     statistics.pipeline_ms = opened->device->pipelineMs();
-    renderSamples(options, renderer, *opened, statistics);
-    return writeResults(options, *opened, renderer, opened->settings, statistics);
+    renderSamples(options, *renderer, *opened, statistics);
+    return writeResults(options, *opened, *renderer, opened->settings, statistics);
 }

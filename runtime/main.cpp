@@ -3,6 +3,7 @@
 
 #include "runtime/capture.h"
 #include "runtime/headless.h"
+#include "runtime/opened_scene.h"
 #include "runtime/windowed.h"
 #undef check
 
@@ -56,6 +57,10 @@ Status checkOptions(const PlayerOptions& options)
         return settings.error();
     if (options.mode != Mode::kGi && settings->view != gpu::kViewNone)
         return Error{ExitCode::kUsage, "views show the inside of mode gi; choose --mode gi or leave the view out"};
+    if (settings->view == gpu::kViewError && options.against.empty())
+        return Error{ExitCode::kUsage, std::string(kNothingToCompareWith)};
+    if (options.headless && settings->view != gpu::kViewError && !options.against.empty())
+        return Error{ExitCode::kUsage, "--against is for the view error; add --view error or leave it out"};
     return Success{};
 }
 } // namespace
@@ -84,6 +89,7 @@ int main(int argc, char** argv)
     app.add_option("--stats", options.stats, "write times and counts as JSON");
     app.add_option("--preset", options.preset, "preview, default or high; without it preview on a CPU device, else default");
     app.add_option("--view", view, "show a stage of mode gi in place of the picture; the same as --set view=NAME");
+    app.add_option("--against", options.against, "rendering (.exr) that --view error compares the picture with");
     app.add_option("--set", options.assignments, "change a setting, name=value; may be repeated")
         ->allow_extra_args(false); // else it takes the package after it
     app.add_flag("--validate", options.validation, "run with the Vulkan validation layers; a message stops the program");

@@ -1,6 +1,29 @@
 #include "runtime/opened_scene.h"
 
 #include "runtime/capture.h"
+#include "tools/image/read_exr.h"
+
+namespace
+{
+Result<Rendering> readAgainst(const PlayerOptions& options)
+{
+    if (options.against.empty())
+        return Rendering{};
+    const auto image = readExr(options.against);
+    if (!image)
+        return image.error().about(options.against.string());
+    // A window may have any size; a picture that is written must be one that lumicut-compare could take too.
+    if (options.headless && (image->width != options.width || image->height != options.height))
+        return Error{ExitCode::kInvalid,
+                     fmt::format("has {}x{} pixels, the picture {}x{}; give both one size (--size)", image->width,
+                                 image->height, options.width, options.height),
+                     options.against.string()};
+    Rendering rendering{.width = image->width, .height = image->height};
+    for (size_t i = 0; i < image->rgb.size(); i += 3)
+        rendering.pixels.push_back({image->rgb[i], image->rgb[i + 1], image->rgb[i + 2]});
+    return rendering;
+}
+} // namespace
 
 Result<OpenedScene> openScene(const PlayerOptions& options, std::span<const char* const> window_extensions,
                               Statistics& statistics)
@@ -9,6 +32,9 @@ Result<OpenedScene> openScene(const PlayerOptions& options, std::span<const char
     if (!package)
         return package.error();
     statistics.open_ms = statistics.elapsedMs();
+    auto against = readAgainst(options);
+    if (!against)
+        return against.error();
 
     auto instance = Instance::create({.validation = options.validation, .extensions = window_extensions});
     if (!instance)
@@ -34,7 +60,20 @@ Result<OpenedScene> openScene(const PlayerOptions& options, std::span<const char
                        .scene = std::move(*scene),
                        .cameras = packageCameras(*package),
                        .camera = *camera,
-                       .settings = *settings};
+                       .settings = *settings,
+                       .against = std::move(*against)};
+}
+
+Status makeRenderer(std::optional<Renderer>& renderer, const OpenedScene& opened, Mode mode, uint32_t width, uint32_t height,
+                    const Settings& settings)
+{
+    renderer.reset(); // its memory first
+    if (const Status status = Renderer::checkSize(*opened.device, width, height, mode, settings); !status)
+        return status;
+    renderer.emplace(*opened.device, *opened.scene, mode, width, height, settings);
+    if (!opened.against.pixels.empty())
+        renderer->compareWith(*opened.device, opened.against.pixels, opened.against.width, opened.against.height);
+    return Success{};
 }
 
 Status writeResults(const PlayerOptions& options, const OpenedScene& opened, Renderer& renderer, const Settings& settings,

@@ -3,6 +3,18 @@
 #include "runtime/player_options.h"
 #include "runtime/statistics.h"
 
+/// Why the view error shows nothing.
+inline constexpr std::string_view kNothingToCompareWith =
+    "the view error needs a rendering to compare with: --against FILE.exr, as --mode reference --output FILE.exr writes it";
+
+/// A rendering from elsewhere.
+struct Rendering
+{
+    uint32_t width = 0;
+    uint32_t height = 0;
+    std::vector<gpu::vec3> pixels; // linear radiance, rows from the top; empty: there is none
+};
+
 /// A package's scene on the device that was asked for. Its members may be borrowed for as long as it lives.
 struct OpenedScene
 {
@@ -12,12 +24,18 @@ struct OpenedScene
     std::vector<Camera> cameras; // the package's, at least one
     Camera camera;               // the one asked for
     Settings settings;           // of the preset and --set
+    Rendering against;           // of --against
 };
 
 /// Opens package, device and camera as `options` say.
 /// @param window_extensions what the window library needs of Vulkan; empty: the device will never show a window
 Result<OpenedScene> openScene(const PlayerOptions& options, std::span<const char* const> window_extensions,
                               Statistics& statistics);
+
+/// A renderer for pictures of that size, with what its view error compares with.
+/// @return kDevice where they are too large for the device, leaving `renderer` empty
+Status makeRenderer(std::optional<Renderer>& renderer, const OpenedScene& opened, Mode mode, uint32_t width, uint32_t height,
+                    const Settings& settings);
 
 /// Prints the summary on stderr, and writes --output and --stats where they are asked for.
 Status writeResults(const PlayerOptions& options, const OpenedScene& opened, Renderer& renderer, const Settings& settings,

@@ -21,6 +21,7 @@ struct PlayerOptions
     uint32_t seed = 0;
     std::string device;
     std::filesystem::path stats; // .json; empty: none
+    std::filesystem::path against; // .exr that the view "error" compares with; empty: none
     bool validation = false;
     std::string preset; // empty: preview on a CPU device, else default
     std::vector<std::string> assignments; // of settings, "name=value", valid

@@ -71,7 +71,7 @@ void Renderer::record(Recorder& rec, const Camera& camera, const Settings& setti
     }
     if (gi_)
     {
-        resolve_.accumulate(rec, gi_->record(rec, rays_, view, settings, moved), pixel_count, 1);
+        recordGi(rec, view, settings, moved);
         return;
     }
     const auto primary = primary_->record(rec, rays_, {.camera = view, .specular_depth = settings.specular_depth});
@@ -86,15 +86,35 @@ void Renderer::record(Recorder& rec, const Camera& camera, const Settings& setti
     resolve_.accumulate(rec, primary.radiance, pixel_count, 1);
 }
 
+void Renderer::recordGi(Recorder& rec, const gpu::CameraParams& view, const Settings& settings, bool moved)
+{
+    shows_error_ = error_ && settings.view == gpu::kViewError;
+    Settings drawn = settings;
+    if (settings.view == gpu::kViewError)
+        drawn.view = gpu::kViewNone;
+    resolve_.accumulate(rec, gi_->record(rec, rays_, view, drawn, moved), width_ * height_, 1);
+    if (shows_error_)
+        error_->record(rec, resolve_.sum(), resolve_.sampleCount(), width_, height_);
+}
+
+void Renderer::compareWith(const Device& device, std::span<const gpu::vec3> reference, uint32_t width, uint32_t height)
+{
+    error_.emplace(device, reference, width, height, width_ * height_);
+}
+
 const Buffer& Renderer::display(Recorder& rec, const Settings& settings, bool bgra)
 {
-    if (gi_ && isDisplayReferred(settings.view))
+    if (shows_error_)
+        return resolve_.displayColors(rec, error_->colors(), width_ * height_, bgra);
+    if (gi_ && settings.view != gpu::kViewError && isDisplayReferred(settings.view))
         return resolve_.display(rec, width_ * height_, 0, Tonemap::kSrgb, bgra);
     return resolve_.display(rec, width_ * height_, settings.exposure, Tonemap(settings.tonemap), bgra);
 }
 
 std::vector<gpu::vec3> Renderer::picture(const Device& device) const
 {
+    if (shows_error_)
+        return device.download<gpu::vec3>(error_->colors(), uint64_t(width_) * height_);
     std::vector<gpu::vec3> pixels = device.download<gpu::vec3>(resolve_.sum(), uint64_t(width_) * height_);
     const float scale = 1.0f / float(std::max(resolve_.sampleCount(), 1u));
     for (gpu::vec3& pixel : pixels)

@@ -4,6 +4,7 @@
 #include "runtime/global_illumination.h"
 #include "runtime/settings.h"
 #include "runtime/stages/direct.h"
+#include "runtime/stages/error_view.h"
 #include "runtime/stages/primary.h"
 #include "runtime/stages/rays.h"
 #include "runtime/stages/reference.h"
@@ -35,6 +36,8 @@ public:
     void record(Recorder& rec, const Camera& camera, const Settings& settings, uint32_t seed, uint32_t sample_count = 1);
     /// The next record() starts the picture anew: settings that decide what samples show have changed.
     void restart() { last_camera_.reset(); }
+    /// What the view "error" compares the picture with; without it that view is the picture. See ErrorView.
+    void compareWith(const Device& device, std::span<const gpu::vec3> reference, uint32_t width, uint32_t height);
     /// The picture so far as 8-bit sRGB pixels, uint[width * height].
     const Buffer& display(Recorder& rec, const Settings& settings, bool bgra);
 
@@ -43,7 +46,7 @@ public:
     uint32_t sampleCount() const { return resolve_.sampleCount(); }
     uint32_t width() const { return width_; }
     uint32_t height() const { return height_; }
-    /// Mean linear radiance, vec3[width * height] rows from the top; waits for the device.
+    /// Mean linear radiance, or the colours of the view, vec3[width * height] rows from the top; waits for the device.
     std::vector<gpu::vec3> picture(const Device& device) const;
     /// Samples left out because they were NaN or infinite.
     uint32_t nonFiniteCount(const Device& device) const;
@@ -53,6 +56,8 @@ public:
     void countRays(RayTally* tally) { rays_.countInto(tally); }
 
 private:
+    void recordGi(Recorder& rec, const gpu::CameraParams& view, const Settings& settings, bool moved);
+
     const SceneGpu& scene_;
     uint32_t width_, height_, max_batch_;
     RayStage rays_;
@@ -61,6 +66,8 @@ private:
     std::optional<ReferenceStage> reference_;
     std::optional<GlobalIllumination> gi_;
     ResolveStage resolve_;
+    std::optional<ErrorView> error_;
+    bool shows_error_ = false; // in the last frame
     std::optional<gpu::CameraParams> last_camera_;
     uint64_t last_lights_ = 0;
 };

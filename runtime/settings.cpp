@@ -42,8 +42,8 @@ constexpr std::array kKnobs{
     Knob{"term", &Settings::term, gpu::kTermAll, gpu::kTermGlossy, "",
          "light paths shown in modes gi and reference; the others sum to all",
          "all,emission,direct,caustics,indirect,glossy"},
-    Knob{"view", &Settings::view, gpu::kViewNone, gpu::kViewNonFinite, "", "what mode gi shows in place of the picture",
-         "none,normals,positions,samples,clusters,budget,photons,tree,cut,irradiance,nonfinite"},
+    Knob{"view", &Settings::view, gpu::kViewNone, gpu::kViewError, "", "what mode gi shows in place of the picture",
+         "none,normals,positions,samples,clusters,budget,photons,tree,cut,irradiance,nonfinite,error"},
     Knob{"exposure", &Settings::exposure, -20, 20, "stops", "brightness of the display; EXR files stay linear"},
     Knob{"tonemap", &Settings::tonemap, 0, 2, "", "display transform", "srgb,aces,agx"},
 };

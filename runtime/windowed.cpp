@@ -61,12 +61,8 @@ private:
 
 Status WindowedPlayer::makeRenderer()
 {
-    renderer_.reset(); // its memory first
     const VkExtent2D extent = swapchain_.extent();
-    if (const Status status = Renderer::checkSize(*opened_.device, extent.width, extent.height, options_.mode, settings_); !status)
-        return status;
-    renderer_.emplace(*opened_.device, *opened_.scene, options_.mode, extent.width, extent.height, settings_);
-    return Success{};
+    return ::makeRenderer(renderer_, opened_, options_.mode, extent.width, extent.height, settings_);
 }
 
 /// @return false while there is nothing to draw on; kDevice where the window has become too large to render
@@ -129,6 +125,11 @@ void WindowedPlayer::usePanel()
                                             .speed = fly_.speed(),
                                             .notice = notice_},
                                            settings_, options_.mode);
+    if (settings_.view == gpu::kViewError && opened_.against.pixels.empty())
+    {
+        settings_.view = settings.view;
+        notice_ = kNothingToCompareWith;
+    }
     if (actions.camera)
         fly_.jump(opened_.cameras[*actions.camera]);
     const bool counts_changed = actions.restart && options_.mode == Mode::kGi; // they decide how much is allocated

@@ -39,3 +39,12 @@ const Buffer& ResolveStage::display(Recorder& rec, uint32_t pixel_count, float e
     rec.run(tonemap_, pixel_count, params, {{"Sum", sum_}, {"Pixels", pixels_}});
     return pixels_;
 }
+
+const Buffer& ResolveStage::displayColors(Recorder& rec, const Buffer& colors, uint32_t pixel_count, bool bgra)
+{
+    const auto scope = rec.scope("resolve");
+    const gpu::TonemapParams params{
+        .pixel_count = pixel_count, .scale = 1, .curve = gpu::kTonemapSrgb, .swap_red_blue = bgra};
+    rec.run(tonemap_, pixel_count, params, {{"Sum", colors}, {"Pixels", pixels_}});
+    return pixels_;
+}

@@ -12,7 +12,7 @@ inline bool isDisplayReferred(uint32_t view)
 /// Whether a view says something of one frame only: colours of indices mean nothing on average.
 inline bool showsOneFrame(uint32_t view)
 {
-    return isDisplayReferred(view) && view != gpu::kViewNonFinite;
+    return isDisplayReferred(view) && view != gpu::kViewNonFinite && view != gpu::kViewError;
 }
 
 class ViewsStage

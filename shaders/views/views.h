@@ -19,6 +19,7 @@ GPU_CONST uint kViewTree = 7u;       // a colour for each node of one level of t
 GPU_CONST uint kViewCut = 8u;        // a colour for each node of the cut, where it is the nearest
 GPU_CONST uint kViewIrradiance = 9u; // interpolated irradiance / pi: the indirect light of a white surface
 GPU_CONST uint kViewNonFinite = 10u; // pixels that are NaN or infinite
+GPU_CONST uint kViewError = 11u;     // how far the picture is from a reference
 
 GPU_CONST uint kViewTreeNodes = 4096u; // nodes of the level that is shown: the one that the cut's threshold comes from
 GPU_CONST uint kViewPhotonShare = 2u;  // one photon of the map for so many pixels is shown at most
@@ -49,6 +50,20 @@ struct PhotonViewParams
     uint most; // photons to show
 };
 GPU_SIZE(PhotonViewParams, 76);
+
+// Relative errors from kLeastError, dark, to 1, yellow, in even steps of the logarithm.
+GPU_CONST float kLeastError = 1e-3f;
+
+struct ErrorViewParams
+{
+    uint width; // pixels
+    uint height;
+    uint reference_width;
+    uint reference_height;
+    float scale; // of the summed samples: 1 / their count
+    float floor_; // radiance below which errors are relative to it: black has no relative error
+};
+GPU_SIZE(ErrorViewParams, 24);
 
 GPU_NAMESPACE_END
 #endif

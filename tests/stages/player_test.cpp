@@ -165,6 +165,10 @@ TEST_F(Player, RefusesArgumentsThatMakeNoSense)
     expectPlayRefused(scene + "--mode gi --view nothing" + output, 1, "none,normals,");
     for (const std::string view : {"--view samples", "--set view=samples"})
         expectPlayRefused(scene + "--mode direct " + view + output, 1, "--mode gi");
+    expectPlayRefused(scene + "--view error" + output, 1, "--against FILE.exr");
+    expectPlayRefused(scene + "--against " + path("none.exr") + output, 1, "--view error");
+    expectPlayRefused(scene + "--view error --against " + path("none.exr") + output, 2, "none.exr");
+    expectPlayRefused(scene + "--view error --against " + path("scene.lumi") + output, 3, "scene.lumi");
     expectPlayRefused(scene + "--camera nowhere" + output, 1, "eye (0)");
     expectPlayRefused(scene + "--camera 1" + output, 1, "eye (0)");
     expectPlayRefused(scene + "--output " + path("out.jpg"), 1, ".exr or .png");
@@ -231,6 +235,14 @@ TEST_F(Player, RendersBothModesWithoutAValidationMessage)
         expected.insert({mode + ".exr", mode + ".json", mode + ".png"});
         EXPECT_EQ(files(), expected);
     }
+}
+
+TEST_F(Player, ShowsTheErrorAgainstARenderingOfTheSameSize)
+{
+    const std::string against = "--view error --against " + path("reference.exr");
+    render("reference.exr", "--mode reference --spp 8");
+    EXPECT_NE(render("error.png", against), render("picture.png", ""));
+    expectPlayRefused(path("scene.lumi") + " " + against + " --size 16x24 --output " + path("out.exr"), 3, "one size");
 }
 
 TEST_F(Player, RendersTheSameBytesForTheSameSeedAndOthersForAnother)

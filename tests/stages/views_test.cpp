@@ -367,6 +367,74 @@ TEST_F(Views, MarkPixelsThatAreNotFinite)
         EXPECT_LT(difference(colors[pixel], bad.contains(pixel) ? Double3(1, 0, 1) : ground()), kColorError);
 }
 
+TEST_F(Views, ShowHowFarThePictureIsFromAReference)
+{
+    constexpr uint32_t kWide = 2 * kWidth, kHigh = 2 * kHeight, kSamples = 4;
+    const float inf = std::numeric_limits<float>::infinity();
+    std::vector<gpu::vec3> reference(kWide * kHigh), sum(kPixels);
+    double mean = 0;
+    for (uint32_t i = 0; i < reference.size(); ++i)
+    {
+        reference[i] = {1, 0.5f + float(i % 7), i % 5 == 0 ? 0 : 0.25f * float(i % 11)};
+        if (i % 13 == 0)
+            reference[i] = {0, 0, 0};
+        mean += double(std::max({reference[i].x, reference[i].y, reference[i].z})) / double(reference.size());
+    }
+    const auto nearest = [](uint32_t pixel)
+    { return (2 * (pixel / kWidth) + 1) * kWide + 2 * (pixel % kWidth) + 1; };
+    const std::array<double, 6> errors{0, 1e-4, 0.003, 0.1, 0.9, 20};
+    std::vector<double> want(kPixels);
+    for (uint32_t i = 0; i < kPixels; ++i)
+    {
+        const gpu::vec3 r = reference[nearest(i)];
+        const double off = errors[i % errors.size()] * (i % 2 == 0 ? 1 : -1) * (r.y > 0 ? double(r.y) : 1);
+        sum[i] = float(kSamples) * gpu::vec3{r.x, float(double(r.y) + off), r.z};
+        // As rounded: the difference of two near numbers keeps few digits.
+        const double got = std::abs(double(sum[i].y) / kSamples - double(r.y));
+        want[i] = got / std::max({double(r.x), double(r.y), double(r.z), 0.01 * mean});
+    }
+    sum[5].z = inf;
+    ErrorView view(device(), reference, kWide, kHigh, kPixels);
+    Recorder rec(device());
+    rec.begin(scene_->descriptorSet());
+    const Buffer buffer = upload("test.sum", std::move(sum));
+    view.record(rec, buffer, kSamples, kWidth, kHeight);
+    rec.submitAndWait();
+    const auto colors = device().download<Color>(view.colors(), kPixels);
+    for (uint32_t i = 0; i < kPixels; ++i)
+    {
+        const double t = 1 + std::log10(std::max(want[i], 1e-3)) / 3;
+        EXPECT_LT(difference(colors[i], i == 5 ? Double3(1, 0, 1) : heatColor(t)), 1e-4) << i << ' ' << want[i];
+    }
+}
+
+TEST_F(Views, ShowTheErrorInPlaceOfThePictureWhichGoesOn)
+{
+    Settings settings = smallSettings();
+    Renderer renderer(device(), *scene_, Mode::kGi, kWidth, kHeight, settings);
+    const auto shown = [&](uint32_t view)
+    {
+        settings.view = view;
+        Recorder rec(device());
+        rec.begin(scene_->descriptorSet());
+        renderer.record(rec, kCamera, settings, 0);
+        rec.submitAndWait();
+        return renderer.picture(device());
+    };
+    const auto picture = shown(gpu::kViewNone);
+    const auto nothing_to_compare = shown(gpu::kViewError);
+    renderer.restart();
+    const auto again = shown(gpu::kViewNone);
+    EXPECT_EQ(std::memcmp(picture.data(), again.data(), kPixels * sizeof(gpu::vec3)), 0);
+    renderer.compareWith(device(), nothing_to_compare, kWidth, kHeight);
+    const auto none = shown(gpu::kViewError); // the second sample again
+    EXPECT_EQ(renderer.sampleCount(), 2u);
+    for (const gpu::vec3& color : none)
+        EXPECT_LT(difference({color.x, color.y, color.z}, heatColor(0)), kColorError);
+    const auto some = shown(gpu::kViewError);
+    EXPECT_NE(std::memcmp(none.data(), some.data(), kPixels * sizeof(gpu::vec3)), 0);
+}
+
 TEST_F(Views, LeaveThePictureBehindThemAloneWhereThereIsNothingToShow)
 {
     place(SamplesMode::kKmeans, 40);
