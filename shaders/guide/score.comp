@@ -28,7 +28,8 @@ void main()
         uint slot = n * params.path_count + path;
         if (flags[slot] == 0u)
             break; // a path stores its photons in order
-        count += wanted[voxelAt(photons[slot].position)];
+        uint sides = wanted[voxelAt(photons[slot].position)];
+        count += uint((sides & facingBit(unpackNormal(photons[slot].normal))) != 0u);
     }
     if (count == 0u)
         return;
