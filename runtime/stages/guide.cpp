@@ -1,20 +1,30 @@
 #include "runtime/stages/guide.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace
 {
 constexpr uint32_t kManyLights = 16; // from here on some of them may be out of sight
 
-struct LightGroups
+/// Fixed-point digits of the scores: as many as a cell that all photons leave by cannot overflow.
+float scoreScale(uint32_t path_count, uint32_t bounce_limit)
+{
+    constexpr double kMostWeight = 1.0 / double(gpu::kGuideUnguided), kMostScale = 16;
+    const double most = double(path_count) * bounce_limit * gpu::kGuideMostWanted * kMostWeight;
+    const double scale = std::min(kMostScale, 4294967295.0 / most);
+    return float(scale >= 1 ? std::floor(scale) : scale);
+}
+
+struct GuidedLights
 {
     gpu::GuideGroups groups{};
     std::vector<float> other_lights; // by light: share of power of it and those before it, beams with a group left out
 };
 
-LightGroups groupsOf(std::span<const LightShare> lights)
+GuidedLights groupsOf(std::span<const LightShare> lights)
 {
-    LightGroups result;
+    GuidedLights result;
     std::ranges::fill(result.groups.beam_lights, gpu::kNone);
     uint32_t beams = 0;
     double others = 0;
@@ -39,8 +49,7 @@ LightGroups groupsOf(std::span<const LightShare> lights)
 bool GuideStage::helps(const SceneGpu& scene)
 {
     const auto lights = scene.lightShares();
-    return lights.size() >= kManyLights ||
-           std::ranges::any_of(lights, &LightShare::isBeam);
+    return lights.size() >= kManyLights || std::ranges::any_of(lights, &LightShare::isBeam);
 }
 
 GuideStage::GuideStage(const Device& device, const SceneGpu& scene, uint32_t max_paths)
@@ -48,10 +57,10 @@ GuideStage::GuideStage(const Device& device, const SceneGpu& scene, uint32_t max
       score_(device.kernel("guide/score", scene.constants())), learn_(device.kernel("guide/learn")),
       distribution_(device.array<gpu::GuideDistribution>("guide.distribution", 1)),
       cells_(device.array<uint32_t>("guide.cells", max_paths)),
-      wanted_(device.array<uint32_t>("guide.wanted", gpu::kGuideVoxels * gpu::kGuideVoxels * gpu::kGuideVoxels)),
+      wanted_(device.array<uint32_t>("guide.wanted", gpu::kGuidePlaces)),
       scores_(device.array<gpu::GuideScore>("guide.scores", gpu::kGuideTotal))
 {
-    const LightGroups lights = groupsOf(scene.lightShares());
+    const GuidedLights lights = groupsOf(scene.lightShares());
     groups_ = device.upload<gpu::GuideGroups>("guide.groups", std::span(&lights.groups, 1));
     other_lights_ = device.upload<float>("guide.other_lights", lights.other_lights);
 }
@@ -86,7 +95,9 @@ void GuideStage::learn(Recorder& rec, const Buffer& photons, const Buffer& flags
                        uint32_t bounce_limit)
 {
     has_learned_ = true;
-    rec.run(score_, path_count, gpu::ScoreParams{.path_count = path_count, .bounce_limit = bounce_limit},
+    rec.run(score_, path_count,
+            gpu::ScoreParams{
+                .path_count = path_count, .bounce_limit = bounce_limit, .scale = scoreScale(path_count, bounce_limit)},
             {{"Groups", groups_},
              {"Distribution", distribution_},
              {"Cells", cells_},

@@ -14,8 +14,10 @@ GPU_CONST uint kGuideBeams = 7u;                      // that have a group of th
 GPU_CONST uint kGuideGroups = kGuideBeams + 1u;       // the last is that of the other lights
 GPU_CONST uint kGuideTotal = kGuideGroups * kGuideCells;
 GPU_CONST uint kGuideVoxels = 64u;                    // each way, over the scene's box
+GPU_CONST uint kGuideSides = 6u;                      // of a voxel: both sides of a thin wall may not both be wanted
+GPU_CONST uint kGuidePlaces = kGuideSides * kGuideVoxels * kGuideVoxels * kGuideVoxels;
 GPU_CONST uint kGuideMarkStride = 4u;                 // of this many gathering rays one tells where light is wanted
-GPU_CONST uint kGuideScoreScale = 16u;                // fixed point
+GPU_CONST uint kGuideMostWanted = 1023u;              // rays that a place counts with at most
 GPU_CONST uint kGuideGroupSize = 64u;
 GPU_CONST uint kGuideLearnSize = 256u;
 
@@ -31,7 +33,7 @@ GPU_SIZE(GuideGroups, 60);
 
 struct GuideScore
 {
-    uint now;     // photons of this frame that fell where light is wanted, in proportion to their power, fixed point
+    uint now;     // gathering rays at the places of this frame's photons, in proportion to their power, fixed point
     float before; // fading sum over the frames
 };
 GPU_SIZE(GuideScore, 8);
@@ -47,8 +49,9 @@ struct ScoreParams
 {
     uint path_count;
     uint bounce_limit;
+    float scale; // of the fixed-point scores
 };
-GPU_SIZE(ScoreParams, 8);
+GPU_SIZE(ScoreParams, 12);
 
 GPU_NAMESPACE_END
 #endif

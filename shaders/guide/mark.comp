@@ -3,14 +3,14 @@
 #extension GL_EXT_scalar_block_layout : require
 #include "shaders/lib/voxel.glsl"
 
-// Marks the places, and their sides, where gathering rays ended. One thread per kGuideMarkStride rays of the queue.
+// Counts the gathering rays that ended at each place. One thread per kGuideMarkStride rays of the queue.
 
 layout(local_size_x = kGuideGroupSize) in;
 
 layout(set = 1, binding = 0, scalar) readonly buffer Queue { QueueSize queue; };
 layout(set = 1, binding = 1) uniform usamplerBuffer Rays;
 layout(set = 1, binding = 2) uniform usamplerBuffer Hits;
-layout(set = 1, binding = 3, scalar) buffer Wanted { uint wanted[]; }; // by voxel: facingBit()s, 0 before
+layout(set = 1, binding = 3, scalar) buffer Wanted { uint wanted[]; }; // by place, 0 before
 #include "shaders/lib/hit.glsl"
 #include "shaders/lib/ray.glsl"
 
@@ -25,8 +25,6 @@ void main()
         return;
     BvhTriangle triangle = loadBvhTriangle(hit.slot);
     vec3 normal = cross(triangle.v1 - triangle.v0, triangle.v2 - triangle.v0);
-    uint voxel = voxelAt(ray.origin + hit.t * ray.direction);
-    uint side = facingBit(dot(normal, ray.direction) > 0.0 ? -normal : normal);
-    if ((wanted[voxel] & side) == 0u)
-        atomicOr(wanted[voxel], side);
+    vec3 position = ray.origin + hit.t * ray.direction;
+    atomicAdd(wanted[placeOf(position, dot(normal, ray.direction) > 0.0 ? -normal : normal)], 1u);
 }

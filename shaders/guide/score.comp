@@ -3,7 +3,7 @@
 #extension GL_EXT_scalar_block_layout : require
 #include "shaders/lib/voxel.glsl"
 
-// Counts, by the cell that a path left from, the photons that fell where light is wanted. One thread per path.
+// Sums, by the cell that a path left from, how much light is wanted where its photons fell. One thread per path.
 
 layout(local_size_x = kGuideGroupSize) in;
 layout(push_constant, scalar) uniform Params { ScoreParams params; };
@@ -28,12 +28,11 @@ void main()
         uint slot = n * params.path_count + path;
         if (flags[slot] == 0u)
             break; // a path stores its photons in order
-        uint sides = wanted[voxelAt(photons[slot].position)];
-        count += uint((sides & facingBit(unpackNormal(photons[slot].normal))) != 0u);
+        count += min(wanted[placeOf(photons[slot].position, unpackNormal(photons[slot].normal))], kGuideMostWanted);
     }
     if (count == 0u)
         return;
     uint cell = cells[path];
     float weight = cellShare(cell) / cellProbability(cell);
-    atomicAdd(scores[cell].now, max(1u, uint(float(count * kGuideScoreScale) * weight + 0.5)));
+    atomicAdd(scores[cell].now, max(1u, uint(float(count) * weight * params.scale + 0.5)));
 }

@@ -152,8 +152,8 @@ TEST_F(Guides, AreNoHelpWithOneLamp)
     EXPECT_FALSE(GuideStage::helps(*load(builder.compile())));
 }
 
-/// score and learn against sums over the photons, by cell.
-TEST_F(Guides, LearnTheSharesOfUsefulPhotonsByCell)
+/// mark, score and learn against sums over the photons, by cell.
+TEST_F(Guides, LearnHowMuchIsWantedOfEachCellsPhotons)
 {
     look();
     const auto probabilities = [&]
@@ -172,31 +172,37 @@ TEST_F(Guides, LearnTheSharesOfUsefulPhotonsByCell)
         return result;
     };
     const std::vector<double> start = probabilities();
-    const auto wanted = contents<uint32_t>(guide_->wanted(), gpu::kGuideVoxels * gpu::kGuideVoxels * gpu::kGuideVoxels);
+    const auto wanted = contents<uint32_t>(guide_->wanted(), gpu::kGuidePlaces);
     const PhotonStage::Output out = trace(0);
     const auto photons = contents<gpu::Photon>(out.photons, out.slot_count);
     const auto flags = contents<uint32_t>(out.flags, out.slot_count);
     const gpu::SceneInfo& info = scene_->info();
-    const auto voxel = [&](gpu::vec3 p)
+    const auto place = [&](const gpu::Photon& photon) // on walls along the axes
     {
         const auto along = [](float x, float low, float high)
         { return uint32_t(std::clamp((x - low) / (high - low) * gpu::kGuideVoxels, 0.0f, gpu::kGuideVoxels - 1.0f)); };
-        return (along(p.z, info.bounds_min.z, info.bounds_max.z) * gpu::kGuideVoxels +
-                along(p.y, info.bounds_min.y, info.bounds_max.y)) *
-                   gpu::kGuideVoxels +
-               along(p.x, info.bounds_min.x, info.bounds_max.x);
+        const gpu::vec3 p = photon.position;
+        const uint32_t voxel = (along(p.z, info.bounds_min.z, info.bounds_max.z) * gpu::kGuideVoxels +
+                                along(p.y, info.bounds_min.y, info.bounds_max.y)) *
+                                   gpu::kGuideVoxels +
+                               along(p.x, info.bounds_min.x, info.bounds_max.x);
+        const Double3 n = unpackedNormal(photon.normal);
+        const uint32_t side = n.x < -0.9 ? 0 : n.x > 0.9 ? 1 : n.y < -0.9 ? 2 : n.y > 0.9 ? 3 : n.z < -0.9 ? 4 : 5;
+        return voxel * gpu::kGuideSides + side;
     };
-    const auto side = [](Double3 n) -> uint32_t // of walls along the axes
-    { return n.x < -0.9 ? 1 : n.x > 0.9 ? 2 : n.y < -0.9 ? 4 : n.y > 0.9 ? 8 : n.z < -0.9 ? 16 : 32; };
     const auto cells = contents<uint32_t>(guide_->cells(), kPaths);
     std::vector<double> scores(start.size());
     double total = 0;
+    uint32_t useful = 0;
     for (uint32_t path = 0; path < kPaths; ++path)
         for (uint32_t n = 0; n < kBounces; ++n)
-            if (const uint32_t slot = n * kPaths + path;
-                flags[slot] != 0 && (wanted[voxel(photons[slot].position)] & side(unpackedNormal(photons[slot].normal))) != 0)
-                ++scores[cells[path]], ++total; // nothing was guided yet: all weigh 1
-    ASSERT_GE(total, 5) << "too few for a test";
+            if (const uint32_t slot = n * kPaths + path; flags[slot] != 0)
+            {
+                const double rays = std::min(wanted[place(photons[slot])], gpu::kGuideMostWanted);
+                scores[cells[path]] += rays, total += rays; // nothing was guided yet: all weigh 1
+                useful += rays > 0;
+            }
+    ASSERT_GE(useful, 5) << "too few for a test";
     const std::vector<double> learned = probabilities();
     for (size_t i = 0; i < learned.size(); ++i)
         EXPECT_NEAR(learned[i], gpu::kGuideUnguided * start[i] + (1 - gpu::kGuideUnguided) * scores[i] / total, 1e-6)
