@@ -99,7 +99,6 @@ Result<Settings> presetSettings(std::string_view name)
         settings.gather_rays = 32;
         settings.caustic_photons = 4000;
         settings.caustic_density_photons = 24;
-        settings.caustic_radius = 0.02f;
     }
     else if (name == "high")
     {

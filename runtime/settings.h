@@ -36,7 +36,7 @@ struct Settings
     uint32_t glossy_mode = 1; // GlossyMode
     uint32_t caustic_photons = 100000; // paths
     uint32_t caustic_density_photons = 200;
-    float caustic_radius = 0.05f; // of the scene's diagonal
+    float caustic_radius = 0.01f; // of the scene's diagonal
     uint32_t reuse_photons = 1; // 0 or 1
     uint32_t reuse_samples = 0; // 0 or 1
     uint32_t reference_depth = 64;
