@@ -45,6 +45,11 @@ Result<OpenedScene> openScene(const PlayerOptions& options, std::span<const char
     auto device = Device::create(*instance, *index, !window_extensions.empty());
     if (!device)
         return device.error();
+    if (const uint64_t bytes = against->pixels.size() * sizeof(gpu::vec3); bytes > (*device)->limits().maxStorageBufferRange)
+        return Error{ExitCode::kDevice,
+                     fmt::format("of {}x{} pixels is too large to compare with on {}", against->width, against->height,
+                                 (*device)->name()),
+                     options.against.string()};
     const auto camera = chooseCamera(*package, options.camera);
     if (!camera)
         return camera.error();
