@@ -27,9 +27,8 @@ void main()
     vec3 reflectance = point.throughput * diffuseReflectance(b, max(0.0, -dot(s.normal, point.direction)));
     if (reflectance == vec3(0.0))
         return;
-    // A caustic's focus may hold most photons of the map: software Vulkan ends a thread's loops after 65535 rounds in all.
     DensityEstimate estimate =
         estimateIrradiance(s.position, s.geometric_normal, size.count, params.photon_count, square(params.radius),
-                           square(params.radius) / 1024.0);
+                           square(params.radius) / 16.0);
     radiance[pixel] += reflectance * kInvPi * estimate.irradiance;
 }

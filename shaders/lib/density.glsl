@@ -8,6 +8,7 @@
 
 const uint kDensityBins = 32u;
 const uint kDensityRefinements = 3u; // histograms, each within one bin of the one before
+const uint kDensityThrong = 4096u;
 
 /// Squared distance of a photon to x, longer off the surface than along it; kInfinity where it lights another surface.
 float photonDistance2(Photon photon, vec3 x, vec3 n)
@@ -17,8 +18,12 @@ float photonDistance2(Photon photon, vec3 x, vec3 n)
 }
 
 /// Squared distance within which there are `wanted` photons, or radius2 where there are fewer.
-/// @param guess2 of that distance; the search widens from it, so a good one saves looking at photons far away
+/// @param guess2 of that distance; the search narrows and widens it, but a good one saves looking at photons far away
 /// @param found photons within that distance
+///
+/// A caustic's focus may hold most photons of the map, and software Vulkan ends a thread's loops after 65535 rounds in all.
+/// So bins past the one that completes `wanted` close as soon as it does; where that one holds a throng, it is parted before
+/// all are counted if it is the first, and left out otherwise: at the rim of the disc photons weigh next to nothing.
 float nearestRadius2(vec3 x, vec3 n, uint photon_count, uint wanted, float radius2, float guess2, out uint found)
 {
     uint bins[kDensityBins];
@@ -28,39 +33,49 @@ float nearestRadius2(vec3 x, vec3 n, uint photon_count, uint wanted, float radiu
     {
         for (uint b = 0u; b < kDensityBins; ++b)
             bins[b] = 0u;
-        float scale = float(kDensityBins) / (high - low);
+        float width = (high - low) / float(kDensityBins);
+        uint open = kDensityBins, looked = 0u;
+        bool throng = false;
+        found = below;
         uint first, end;
         beginRanges(photon_count);
-        while (nextRange(x, high, first, end))
+        while (!throng && nextRange(x, low + float(open) * width, first, end))
+        {
             for (uint i = first; i < end; ++i)
             {
                 float d2 = photonDistance2(loadPhoton(i), x, n);
-                if (d2 >= low && d2 < high)
-                    ++bins[min(uint((d2 - low) * scale), kDensityBins - 1u)];
+                uint b = d2 < low || d2 >= high ? kDensityBins : min(uint((d2 - low) / width), kDensityBins - 1u);
+                if (b < open)
+                {
+                    ++bins[b];
+                    ++found;
+                }
             }
-        uint b = 0u;
-        found = below;
-        for (; b < kDensityBins; ++b)
-        {
-            found += bins[b];
-            if (found >= wanted)
-                break;
-            below = found;
+            while (found >= wanted && found - bins[open - 1u] >= wanted)
+                found -= bins[--open];
+            looked += end - first;
+            throng = found >= wanted && looked > max(kDensityThrong, 4u * wanted);
         }
-        if (b == kDensityBins)
+        if (found < wanted)
         {
             if (high >= radius2 || refinement > 0u) // in a refinement: rounding has moved a photon out of its bin
                 return high;
             high = min(high * max(2.0, min(16.0, 1.5 * float(wanted) / float(max(found, 1u)))), radius2);
-            below = 0u;
             continue;
         }
         ++refinement;
-        float width = (high - low) / float(kDensityBins);
-        high = low + float(b + 1u) * width;
-        low += float(b) * width;
+        high = low + float(open) * width;
+        if (throng && open == 1u)
+            continue;
+        if (throng)
+        {
+            found -= bins[open - 1u];
+            return high - width;
+        }
         if (found <= wanted + wanted / 16u)
             break;
+        low = high - width;
+        below = found - bins[open - 1u];
     }
     return high;
 }

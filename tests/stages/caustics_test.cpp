@@ -138,6 +138,26 @@ TEST_F(Caustics, OfAnEvenGridAreItsIrradiance)
     EXPECT_GT(compared, 50u);
 }
 
+/// More photons than software Vulkan has rounds of loops for a thread, in a spot far smaller than the first guess.
+TEST_F(Caustics, OfADenseFocusAreItsIrradiance)
+{
+    constexpr int kSide = 300;
+    constexpr float kSpacing = 1e-4f;
+    const auto floor = std::ranges::find_if(points_->points, [](const auto& p)
+                                            { return p.exists && p.diffuse.x > 0 && std::abs(p.position.y) < 1e-4; });
+    ASSERT_NE(floor, points_->points.end());
+    std::vector<gpu::Photon> grid;
+    for (int i = 0; i < kSide; ++i)
+        for (int k = 0; k < kSide; ++k)
+            grid.push_back(photon({float(floor->position.x) + (float(i) - kSide / 2) * kSpacing, 0,
+                                   float(floor->position.z) + (float(k) - kSide / 2) * kSpacing},
+                                  {0, 1, 0}, {0, -1, 0}, {kSpacing * kSpacing, 0, 0}));
+    const auto pixels = caustics(*mapOf(*scene_, grid), 400);
+    const size_t pixel = size_t(floor - points_->points.begin());
+    const double want = floor->diffuse.x * floor->throughput.x / kPi; // irradiance 1
+    EXPECT_NEAR(pixels[pixel].x, want, 0.05 * want); // as the kernel's sum over a grid of 400
+}
+
 TEST_F(Caustics, AreDefinedForFewPhotonsAndForEqualOnes)
 {
     for (const uint32_t count : {0u, 1u, 7u, 100u})
