@@ -14,6 +14,10 @@ constexpr float kGuideReach = 0.05f; // of the scene's diagonal: how far from th
 /// What reflects this much sends a glossy ray from every pixel: a standing picture can wait for less noise.
 constexpr float kSureInMotion = 0.2f, kSureStanding = 0.05f;
 
+/// A standing picture interpolates until every pixel could have had this many rays of its own (kLeastInterpolated frames at
+/// least), then takes those: the blur of the first frames fades, and their lack of noise covers the noise of the next ones.
+constexpr uint32_t kOwnRays = 256, kLeastInterpolated = 8;
+
 constexpr float kSearchRadius = 0.1f; // of the scene's diagonal: how far the nearest sample or cut node may be
 
 /// Progressive photon mapping: r_n^2 / r_0^2 = prod (i + 2/3) / (i + 1) over the n frames before (Hachisuka et al.
@@ -114,9 +118,11 @@ const Buffer& GlobalIllumination::record(Recorder& rec, const RayStage& rays, co
         const PhotonTreeStage::Output map = recordPhotons(frame);
         const CutStage::Output cut = recordCut(frame, map);
         std::optional<InterpolateStage::Sorted> samples;
-        if (frame.shows(gpu::kTermIndirect) || reflectsByHarmonics(frame))
+        if (gathersAtPixels(frame))
+            recordPixelGather(frame, map, cut);
+        else if (frame.shows(gpu::kTermIndirect) || reflectsByHarmonics(frame))
             samples.emplace(recordGather(frame, map, cut));
-        if (frame.shows(gpu::kTermIndirect))
+        if (samples && frame.shows(gpu::kTermIndirect))
             recordIndirect(frame, *samples);
         if (glossy)
             recordGlossy(frame, cut, samples ? &*samples : nullptr);
@@ -294,6 +300,27 @@ void GlobalIllumination::recordIndirect(const Frame& frame, const InterpolateSta
                          .alpha = frame.settings.sample_alpha * 2 / longest_side_,
                          .radius = kSearchRadius * diagonal_,
                          .white = frame.settings.view == gpu::kViewIrradiance});
+}
+
+/// Interpolation blurs what is smaller than the distance of samples, however many frames it has.
+bool GlobalIllumination::gathersAtPixels(const Frame& frame) const
+{
+    const uint32_t rays = gather_.raysPerPixel(frame.pixel_count);
+    return frame.settings.view == gpu::kViewNone && frame.shows(gpu::kTermIndirect) &&
+           frame.index >= std::max(kOwnRays / rays, kLeastInterpolated);
+}
+
+void GlobalIllumination::recordPixelGather(const Frame& frame, const PhotonTreeStage::Output& map,
+                                           const CutStage::Output& cut)
+{
+    const auto scope = frame.rec.scope("gather");
+    gather_.recordPixels(frame.rec, frame.rays, map, cut, gatherInput(frame),
+                         {.points = frame.points,
+                          .radiance = frame.radiance,
+                          .point_count = frame.pixel_count,
+                          .frame = frame.index,
+                          .seed = traceSeed(frame.camera.seed, 0, gpu::kTermIndirect)},
+                         guide_ ? &*guide_ : nullptr);
 }
 
 /// Rough reflection is from the samples' harmonics in the first frame of a picture, with little noise; harmonics of

@@ -47,6 +47,8 @@ private:
     CutStage::Output recordCut(const Frame& frame, const PhotonTreeStage::Output& map);
     SamplesStage::Input samplesInput(const Frame& frame, uint32_t age) const;
     GatherStage::Input gatherInput(const Frame& frame) const;
+    bool gathersAtPixels(const Frame& frame) const;
+    void recordPixelGather(const Frame& frame, const PhotonTreeStage::Output& map, const CutStage::Output& cut);
     bool reflectsByHarmonics(const Frame& frame) const;
     InterpolateStage::Sorted recordGather(const Frame& frame, const PhotonTreeStage::Output& map,
                                           const CutStage::Output& cut);

@@ -6,7 +6,7 @@ CutStage::CutStage(const Device& device, const SceneGpu& scene, uint32_t max_pho
       select_(device.kernel("cut/select")), refine_(device.kernel("cut/refine")),
       collect_(device.kernel("cut/collect")), reorder_(device.kernel("cut/reorder")),
       finest_(device.kernel("cut/finest")), probe_(device.kernel("cut/probe")),
-      cover_(device.kernel("cut/cover", scene.constants())), compaction_(device, "cut.compaction", 2 * max_photons),
+      cover_(device.kernel("cut/cover", scene.constants())), represent_(device.kernel("cut/represent")), compaction_(device, "cut.compaction", 2 * max_photons),
       tree_(device, "cut.tree", max_photons), sums_(device.array<gpu::PhotonSums>("cut.sums", max_photons)),
       arrivals_(device.array<uint32_t>("cut.arrivals", max_photons)),
       partials_(device.array<gpu::PartialMean>("cut.partials", gpu::kPartialMeans)),
@@ -22,6 +22,7 @@ CutStage::CutStage(const Device& device, const SceneGpu& scene, uint32_t max_pho
       size_(device.array<gpu::QueueSize>("cut.size", 1)), ids_(device.array<uint32_t>("cut.ids", max_photons)),
       spheres_(device.array<gpu::vec4>("cut.spheres", max_photons)),
       nodes_(device.texelArray<gpu::CutNode>("cut.nodes", max_photons)),
+      directions_(device.array<uint32_t>("cut.directions", max_photons)),
       probes_(device, "cut.probes", gpu::kCutProbeCapacity),
       hits_(device.texelArray<gpu::Hit>("cut.hits", gpu::kCutProbeCapacity))
 {
@@ -120,6 +121,15 @@ CutStage::Output CutStage::record(Recorder& rec, const RayStage& rays, const Pho
     tree_.record(rec, spheres_, size_);
     rec.runIndirect(reorder_, size_, 0, NoParams{},
                     {{"Size", size_}, {"Ids", ids_}, {"Order", tree_.order()}, {"Finals", finals_}, {"Nodes", nodes_}});
+    rec.runIndirect(represent_, size_, 0, gpu::RepresentParams{.seed = in.seed},
+                    {{"CutSize", size_},
+                     {"Ids", ids_},
+                     {"Order", tree_.order()},
+                     {"Size", map.size},
+                     {"TreeNodes", tree_nodes},
+                     {"Photons", map.photons},
+                     {"Sums", sums_},
+                     {"Directions", directions_}});
     if (in.probes > 0 && in.mode != CutMode::kNearest)
         recordProbes(rec, rays, in);
     return output();

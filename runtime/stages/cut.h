@@ -33,22 +33,23 @@ public:
     {
         const Buffer& size;  // gpu::QueueSize: nodes of the cut
         const Buffer& nodes; // gpu::CutNode[size.count], sorted as the tree
+        const Buffer& directions; // uint32_t[size.count]: octahedral, the way that light arrives at a node: one photon's
         const Tree& tree;    // over their supports
     };
     Output record(Recorder& rec, const RayStage& rays, const PhotonTreeStage::Output& map, const Input& in) const;
     /// What the last record() left.
-    Output output() const { return {.size = size_, .nodes = nodes_, .tree = tree_}; }
+    Output output() const { return {.size = size_, .nodes = nodes_, .directions = directions_, .tree = tree_}; }
 
 private:
     void recordProbes(Recorder& rec, const RayStage& rays, const Input& in) const;
 
     Kernel summarise_, level_mean_, threshold_kernel_, coarse_, select_, refine_, collect_, reorder_, finest_, probe_,
-        cover_;
+        cover_, represent_;
     Compaction compaction_;
     Tree tree_;
     Buffer sums_, arrivals_, partials_, threshold_, id_count_, divided_, work_, next_work_, work_size_, next_work_size_,
         members_, finals_;
-    Buffer size_, ids_, spheres_, nodes_;
+    Buffer size_, ids_, spheres_, nodes_, directions_;
     RayQueue probes_;
     Buffer hits_;
 };

@@ -2,9 +2,11 @@
 
 GatherStage::GatherStage(const Device& device, const SceneGpu& scene, uint32_t max_samples,
                          uint32_t max_rays_per_sample)
-    : max_samples_(max_samples), has_specular_(scene.hasFeature(gpu::kFeatureSpecular)),
-      generate_(device.kernel("gather/generate")), link_(device.kernel("gather/link", scene.constants())),
+    : max_samples_(max_samples), max_rays_(max_samples * max_rays_per_sample), has_specular_(scene.hasFeature(gpu::kFeatureSpecular)),
+      generate_(device.kernel("gather/generate")),
+      generate_pixels_(device.kernel("gather/generate_pixels", scene.constants())), link_(device.kernel("gather/link", scene.constants())),
       link_knn_(device.kernel("gather/link_knn", scene.constants())), sum_(device.kernel("gather/sum")),
+      add_(device.kernel("gather/add")),
       carry_(device.kernel("gather/carry")), project_(device.kernel("gather/project", scene.constants())),
       queue_(device, "gather.queue", max_samples * max_rays_per_sample),
       next_queue_(device, "gather.next_queue", max_samples * max_rays_per_sample),
@@ -26,6 +28,7 @@ void GatherStage::look(Recorder& rec, const RayStage& rays, const SamplesStage::
              {"Samples", samples.samples},
              {"Queue", queue_.size},
              {"Rays", queue_.rays},
+             {"States", states_},
              {"KeptSize", samples.kept}});
     rays.closest(rec, queue_, hits_, traceSeed(params.seed, 0, 0));
     if (guide)
@@ -42,24 +45,85 @@ void GatherStage::record(Recorder& rec, const RayStage& rays, const SamplesStage
                          const PhotonTreeStage::Output& map, const CutStage::Output& cut, const Input& in,
                          GuideStage* guide) const
 {
-    gpu::GatherParams params{.ray_count = in.ray_count,
-                             .seed = in.seed,
-                             .depth = 0,
-                             .depth_limit = has_specular_ ? in.specular_depth : 0,
-                             .mode = uint32_t(in.mode),
-                             .photon_count = in.photon_count,
-                             .radius = in.radius};
+    const gpu::GatherParams params = paramsOf(in);
     look(rec, rays, samples, params, guide);
+    follow(rec, rays, map, cut, params);
+    rec.run(sum_, max_samples_ * gpu::kRaysGroupSize, params,
+            {{"Size", samples.size},
+             {"GatheredBlock", gathered_},
+             {"Samples", samples.samples},
+             {"KeptSize", samples.kept}});
+    if (!in.by_direction)
+        return;
+    rec.copy(harmonics_, old_harmonics_, harmonics_.size());
+    rec.runIndirect(carry_, samples.kept, 0, NoParams{},
+                    {{"KeptSize", samples.kept},
+                     {"Kept", samples.kept_from},
+                     {"OldHarmonics", old_harmonics_},
+                     {"Harmonics", harmonics_}});
+    rec.run(project_, max_samples_ * gpu::kRaysGroupSize, params,
+            {{"Size", samples.size},
+             {"GatheredBlock", gathered_},
+             {"Samples", samples.samples},
+             {"Harmonics", harmonics_},
+             {"KeptSize", samples.kept}});
+}
+
+void GatherStage::recordPixels(Recorder& rec, const RayStage& rays, const PhotonTreeStage::Output& map,
+                               const CutStage::Output& cut, const Input& in, const PixelInput& pixels,
+                               GuideStage* guide) const
+{
+    gpu::GatherParams params = paramsOf(in);
+    params.ray_count = raysPerPixel(pixels.point_count);
+    const uint32_t band = max_rays_ / params.ray_count; // pixels whose rays there is room for
+    for (uint32_t first = 0; first < pixels.point_count; first += band)
+    {
+        const gpu::PixelGatherParams here{.first_point = first,
+                                          .point_count = std::min(band, pixels.point_count - first),
+                                          .ray_count = params.ray_count,
+                                          .first_ray = pixels.frame * params.ray_count,
+                                          .seed = pixels.seed};
+        params.seed = traceSeed(in.seed, first, 0);
+        rays.reset(rec, queue_.size);
+        rec.run(generate_pixels_, here.point_count, here,
+                {{"Points", pixels.points},
+                 {"Queue", queue_.size},
+                 {"Rays", queue_.rays},
+                 {"States", states_},
+                 {"GatheredBlock", gathered_}});
+        rays.close(rec, queue_.size);
+        rays.closest(rec, queue_, hits_, params.seed);
+        if (guide)
+            guide->mark(rec, queue_, max_rays_, hits_, first > 0);
+        follow(rec, rays, map, cut, params);
+        rec.run(add_, here.point_count, here, {{"GatheredBlock", gathered_}, {"Radiance", pixels.radiance}});
+    }
+}
+
+gpu::GatherParams GatherStage::paramsOf(const Input& in) const
+{
+    return {.ray_count = in.ray_count,
+            .seed = in.seed,
+            .depth = 0,
+            .depth_limit = has_specular_ ? in.specular_depth : 0,
+            .mode = uint32_t(in.mode),
+            .photon_count = in.photon_count,
+            .radius = in.radius};
+}
+
+void GatherStage::follow(Recorder& rec, const RayStage& rays, const PhotonTreeStage::Output& map,
+                         const CutStage::Output& cut, gpu::GatherParams params) const
+{
     const RayQueue* queue = &queue_;
     const RayQueue* next = &next_queue_;
     for (; params.depth <= params.depth_limit; ++params.depth)
     {
         if (params.depth > 0)
-            rays.closest(rec, *queue, hits_, traceSeed(in.seed, 0, params.depth));
+            rays.closest(rec, *queue, hits_, traceSeed(params.seed, 0, params.depth));
         rays.reset(rec, next->size);
         {
             const auto scope = rec.scope("gather.link"); // the lookups: what the cut is there for
-            if (in.mode == CutMode::kKnn)
+            if (CutMode(params.mode) == CutMode::kKnn)
                 rec.runIndirect(link_knn_, queue->size, 0, params,
                                 {{"Queue", queue->size},
                                  {"Rays", queue->rays},
@@ -82,28 +146,10 @@ void GatherStage::record(Recorder& rec, const RayStage& rays, const SamplesStage
                                  {"GatheredBlock", gathered_},
                                  {"CutSize", cut.size},
                                  {"TreeNodes", cut.tree.nodes()},
-                                 {"CutNodes", cut.nodes}});
+                                 {"CutNodes", cut.nodes},
+                                 {"Directions", cut.directions}});
         }
         rays.close(rec, next->size);
         std::swap(queue, next);
     }
-    rec.run(sum_, max_samples_ * gpu::kRaysGroupSize, params,
-            {{"Size", samples.size},
-             {"GatheredBlock", gathered_},
-             {"Samples", samples.samples},
-             {"KeptSize", samples.kept}});
-    if (!in.by_direction)
-        return;
-    rec.copy(harmonics_, old_harmonics_, harmonics_.size());
-    rec.runIndirect(carry_, samples.kept, 0, NoParams{},
-                    {{"KeptSize", samples.kept},
-                     {"Kept", samples.kept_from},
-                     {"OldHarmonics", old_harmonics_},
-                     {"Harmonics", harmonics_}});
-    rec.run(project_, max_samples_ * gpu::kRaysGroupSize, params,
-            {{"Size", samples.size},
-             {"GatheredBlock", gathered_},
-             {"Samples", samples.samples},
-             {"Harmonics", harmonics_},
-             {"KeptSize", samples.kept}});
 }

@@ -1,4 +1,5 @@
-// Final gathering: every sample's irradiance from hundreds of rays, which read the illumination cut where they end.
+// Final gathering: rays by the hundreds from every irradiance sample, or a few from every pixel of a standing picture, read
+// the illumination cut where they end.
 #pragma once
 #include "runtime/stages/cut.h"
 #include "runtime/stages/guide.h"
@@ -30,6 +31,20 @@ public:
                 const PhotonTreeStage::Output& map, const CutStage::Output& cut, const Input& in,
                 GuideStage* guide = nullptr) const;
 
+    struct PixelInput
+    {
+        const Buffer& points;   // gpu::ShadingPoint[point_count]
+        const Buffer& radiance; // vec3[point_count], grows by the indirect diffuse light
+        uint32_t point_count;
+        uint32_t frame; // in a standing picture: its rays continue those of the frames before
+        uint32_t seed;  // of the picture
+    };
+    /// Rays of every pixel and frame that cost as much as those of the samples; one at least.
+    uint32_t raysPerPixel(uint32_t pixel_count) const { return std::max(max_rays_ / pixel_count, 1u); }
+    /// Indirect diffuse light without samples and interpolation: noise, and no blur but that of the cut.
+    void recordPixels(Recorder& rec, const RayStage& rays, const PhotonTreeStage::Output& map, const CutStage::Output& cut,
+                      const Input& in, const PixelInput& pixels, GuideStage* guide = nullptr) const;
+
     /// The light of the samples by direction, as the last record() that was asked for it left it.
     const Buffer& harmonics() const { return harmonics_; } // gpu::SampleHarmonics[samples]
 
@@ -37,9 +52,14 @@ private:
     void look(Recorder& rec, const RayStage& rays, const SamplesStage::Output& samples, const gpu::GatherParams& params,
               GuideStage* guide) const;
 
-    uint32_t max_samples_;
+    gpu::GatherParams paramsOf(const Input& in) const;
+    /// Follows the rays of queue_, whose first hits are in hits_, to gathered_.
+    void follow(Recorder& rec, const RayStage& rays, const PhotonTreeStage::Output& map, const CutStage::Output& cut,
+                gpu::GatherParams params) const;
+
+    uint32_t max_samples_, max_rays_;
     bool has_specular_;
-    Kernel generate_, link_, link_knn_, sum_, carry_, project_;
+    Kernel generate_, generate_pixels_, link_, link_knn_, sum_, add_, carry_, project_;
     RayQueue queue_, next_queue_;
     Buffer hits_, states_, gathered_, harmonics_, old_harmonics_;
 };

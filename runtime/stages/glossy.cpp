@@ -48,7 +48,8 @@ void GlossyStage::record(Recorder& rec, const RayStage& rays, const CutStage::Ou
                          {"Radiance", in.radiance},
                          {"CutSize", cut.size},
                          {"TreeNodes", cut.tree.nodes()},
-                         {"CutNodes", cut.nodes}});
+                         {"CutNodes", cut.nodes},
+                         {"Directions", cut.directions}});
         rays.close(rec, next->size);
         std::swap(queue, next);
     }

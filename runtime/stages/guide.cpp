@@ -84,9 +84,11 @@ void GuideStage::emit(Recorder& rec, const Buffer& starts, const gpu::EmitParams
              {"Cells", cells_}});
 }
 
-void GuideStage::mark(Recorder& rec, const RayQueue& queue, uint32_t max_rays, const Buffer& hits)
+void GuideStage::mark(Recorder& rec, const RayQueue& queue, uint32_t max_rays, const Buffer& hits,
+                      bool more)
 {
-    rec.clear(wanted_);
+    if (!more)
+        rec.clear(wanted_);
     rec.run(mark_, max_rays / gpu::kGuideMarkStride, NoParams{},
             {{"Queue", queue.size}, {"Rays", queue.rays}, {"Hits", hits}, {"Wanted", wanted_}});
 }

@@ -27,7 +27,8 @@ public:
 
     /// Says where light is wanted from now on: where these rays ended.
     /// @param hits gpu::Hit[queue capacity]
-    void mark(Recorder& rec, const RayQueue& queue, uint32_t max_rays, const Buffer& hits);
+    /// @param more whether it is wanted, too, where the rays of the last mark() ended
+    void mark(Recorder& rec, const RayQueue& queue, uint32_t max_rays, const Buffer& hits, bool more = false);
     /// Learns from the photons of the last emit(). @param photons, flags as PhotonStage gives them
     void learn(Recorder& rec, const Buffer& photons, const Buffer& flags, uint32_t path_count, uint32_t bounce_limit);
 

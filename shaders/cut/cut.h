@@ -57,6 +57,12 @@ GPU_CONST float kCutSpread = 0.8f;
 GPU_CONST uint kCutProbeCapacity = 1u << 20u; // rays that feel for surfaces, of all nodes
 GPU_CONST float kMostUncovered = 4.0f;        // a node's light grows no more than this
 
+struct RepresentParams
+{
+    uint seed;
+};
+GPU_SIZE(RepresentParams, 4);
+
 struct ProbeParams
 {
     uint ray_count; // that a node wants

@@ -21,9 +21,19 @@ struct Gathered // what one ray brought
 };
 GPU_SIZE(Gathered, 16);
 
+struct PixelGatherParams
+{
+    uint first_point; // of the band of pixels that is gathered for
+    uint point_count; // in it
+    uint ray_count;   // of a pixel, in this frame
+    uint first_ray;   // index of the first of them in the pixel's sequence
+    uint seed;
+};
+GPU_SIZE(PixelGatherParams, 20);
+
 struct GatherParams
 {
-    uint ray_count; // of a sample
+    uint ray_count; // of a sample or pixel
     uint seed;
     uint depth;       // delta events before this one
     uint depth_limit;

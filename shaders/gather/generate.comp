@@ -13,6 +13,7 @@ layout(set = 1, binding = 0, scalar) readonly buffer Size { QueueSize size; };
 layout(set = 1, binding = 1, scalar) readonly buffer Samples { Sample samples[]; };
 layout(set = 1, binding = 2, scalar) buffer Queue { QueueSize queue; };
 layout(set = 1, binding = 3, scalar) writeonly buffer Rays { Ray rays[]; };
+layout(set = 1, binding = 5, scalar) writeonly buffer States { GatherState states[]; };
 layout(set = 1, binding = 4, scalar) readonly buffer KeptSize { QueueSize kept_size; }; // the first samples, which have all they need
 
 void main()
@@ -27,4 +28,5 @@ void main()
     vec3 normal = unpackNormal(samples[sample_].normal);
     vec3 direction = gatherDirection(normal, new_sample, i - new_sample * params.ray_count, params.seed);
     rays[i] = Ray(offsetOrigin(samples[sample_].position, normal), kInfinity, direction, i);
+    states[i] = GatherState(vec3(1.0), kNone, 0u);
 }

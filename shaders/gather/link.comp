@@ -18,15 +18,16 @@ layout(set = 1, binding = 6, scalar) buffer GatheredBlock { Gathered gathered[];
 layout(set = 1, binding = 7, scalar) readonly buffer CutSize { QueueSize cut_size; };
 layout(set = 1, binding = 8) uniform usamplerBuffer TreeNodes;
 layout(set = 1, binding = 9) uniform usamplerBuffer CutNodes;
+layout(set = 1, binding = 10, scalar) readonly buffer Directions { uint directions[]; };
 #include "shaders/lib/hit.glsl"
 #include "shaders/lib/ray.glsl"
-#include "shaders/lib/cut.glsl"
+#include "shaders/lib/cut_light.glsl"
 
-vec3 irradianceAt(vec3 x, vec3 n)
+Incident lightAt(vec3 x, vec3 n, float u)
 {
     if (params.mode == kCutNearest)
-        return nearestCutIrradiance(x, n, params.radius * params.radius);
-    return cutIrradiance(x, n);
+        return nearestCutLight(x, n, params.radius * params.radius);
+    return cutLight(x, n, u);
 }
 #include "shaders/lib/gather_link.glsl"
 #include "shaders/gather/link_body.glsl"

@@ -6,9 +6,7 @@ void main()
         return;
     Ray ray = loadRay(i);
     Hit hit = loadHit(i);
-    GatherState state = GatherState(vec3(1.0), kNone, 0u);
-    if (params.depth > 0u)
-        state = states[ray.path];
+    GatherState state = states[ray.path];
     uint sample_ = ray.path / params.ray_count;
     Sampler sampler_ = Sampler(hash(params.seed, sample_), ray.path - sample_ * params.ray_count, 1u + params.depth);
     Link link = followLink(ray, hit, state, sampler_, false);

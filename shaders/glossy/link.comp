@@ -18,14 +18,12 @@ layout(set = 1, binding = 6, scalar) buffer Radiance { vec3 radiance[]; };
 layout(set = 1, binding = 7, scalar) readonly buffer CutSize { QueueSize cut_size; };
 layout(set = 1, binding = 8) uniform usamplerBuffer TreeNodes;
 layout(set = 1, binding = 9) uniform usamplerBuffer CutNodes;
+layout(set = 1, binding = 10, scalar) readonly buffer Directions { uint directions[]; };
 #include "shaders/lib/hit.glsl"
 #include "shaders/lib/ray.glsl"
-#include "shaders/lib/cut.glsl"
+#include "shaders/lib/cut_light.glsl"
 
-vec3 irradianceAt(vec3 x, vec3 n)
-{
-    return cutIrradiance(x, n);
-}
+Incident lightAt(vec3 x, vec3 n, float u) { return cutLight(x, n, u); }
 #include "shaders/lib/gather_link.glsl"
 
 void main()

@@ -251,8 +251,7 @@ BsdfSample sampleBsdf(Bsdf b, vec3 wo, float choice, vec2 u)
     vec3 wi;
     if (diffuse)
     {
-        float r = sqrt(u.x), phi = 2.0 * kPi * u.y;
-        wi = vec3(r * cos(phi), r * sin(phi), sqrt(max(0.0, 1.0 - u.x)));
+        wi = cosineDirection(u);
     }
     else
     {

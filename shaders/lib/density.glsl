@@ -2,8 +2,10 @@
 // usamplerBuffers TreeNodes and Photons, sorted as the tree, before it includes this. Functions only.
 #ifndef LIB_DENSITY_GLSL
 #define LIB_DENSITY_GLSL
+#include "shaders/lib/incident.glsl"
 #include "shaders/lib/math.glsl"
 #include "shaders/lib/photon.glsl"
+#include "shaders/lib/random.glsl"
 #include "shaders/lib/tree.glsl"
 
 const uint kDensityBins = 32u;
@@ -104,6 +106,23 @@ DensityEstimate estimateIrradiance(vec3 x, vec3 n, uint photon_count, uint wante
                 sum += loadPhoton(i).power * square(1.0 - d2 / within2);
         }
     return DensityEstimate(sum * (3.0 * kInvPi / within2), within2);
+}
+
+/// The photons' light itself. @param u random, in [0,1)
+Incident densityLight(vec3 x, vec3 n, uint photon_count, uint wanted, float radius2, float guess2, float u)
+{
+    DensityEstimate estimate = estimateIrradiance(x, n, photon_count, wanted, radius2, guess2);
+    Reservoir speaker = Reservoir(u, 0.0, kNone);
+    uint first, end;
+    beginRanges(photon_count);
+    while (nextRange(x, estimate.radius2, first, end))
+        for (uint i = first; i < end; ++i)
+        {
+            float d2 = photonDistance2(loadPhoton(i), x, n);
+            if (d2 < estimate.radius2)
+                offer(speaker, luminance(loadPhoton(i).power) * square(1.0 - d2 / estimate.radius2), i);
+        }
+    return Incident(estimate.irradiance, speaker.chosen == kNone ? -n : unpackNormal(loadPhoton(speaker.chosen).direction));
 }
 
 #endif

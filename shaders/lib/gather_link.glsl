@@ -1,9 +1,21 @@
 // One link of a gathering ray's path: at a surface that scatters it reads the light there; a mirror or glass sends it on.
-// The kernel defines `vec3 irradianceAt(vec3 x, vec3 n)` before it includes this. Functions only.
+// The kernel defines `Incident lightAt(vec3 x, vec3 n, float u)`, u random, before it includes this. Functions only.
 #ifndef LIB_GATHER_LINK_GLSL
 #define LIB_GATHER_LINK_GLSL
 #include "shaders/gather/gather.h"
 #include "shaders/lib/path.glsl"
+
+const float kLeastAlpha = 0.25; // one direction stands for all that light comes from: a lobe no sharper than that
+
+/// What a surface sends towards wo of the light that photons brought (Jensen 1996).
+vec3 reflectedLight(Bsdf b, mat3 frame, vec3 wo, Incident light)
+{
+    vec3 wi = -light.direction * frame;
+    wi.z = max(wi.z, 0.05); // the shading normal of the photon's place was another
+    b.alpha = max(b.alpha, kLeastAlpha);
+    BsdfValue f = evaluateBsdf(b, wo, normalize(wi));
+    return (f.diffuse + f.specular) * light.irradiance;
+}
 
 struct Link
 {
@@ -39,10 +51,8 @@ Link followLink(Ray ray, Hit hit, inout GatherState state, Sampler sampler_, boo
     vec2 choice = nextPair(sampler_);
     if (!b.smooth_specular || choice.x < p.diffuse)
     {
-        vec3 reflectance = diffuseReflectance(b, wo.z) + glossyReflectance(b, wo.z);
-        vec3 carried = state.throughput * reflectance * (kInvPi / (b.smooth_specular ? p.diffuse : 1.0));
-        if (carried != vec3(0.0))
-            link.radiance += carried * irradianceAt(s.position, s.geometric_normal);
+        Incident light = lightAt(s.position, s.geometric_normal, choice.y);
+        link.radiance += state.throughput * reflectedLight(b, frame, wo, light) / (b.smooth_specular ? p.diffuse : 1.0);
         return link;
     }
     BsdfSample next = sampleBsdf(b, wo, choice.x, vec2(0.5));

@@ -8,9 +8,7 @@
 vec3 gatherDirection(vec3 normal, uint new_sample, uint ray, uint seed)
 {
     Sampler sampler_ = Sampler(hash(seed, new_sample), ray, 0u);
-    vec2 u = nextPair(sampler_);
-    float r = sqrt(u.x), phi = 2.0 * kPi * u.y;
-    return frameAround(normal) * vec3(r * cos(phi), r * sin(phi), sqrt(max(0.0, 1.0 - u.x)));
+    return frameAround(normal) * cosineDirection(nextPair(sampler_));
 }
 
 #endif

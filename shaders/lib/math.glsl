@@ -43,6 +43,13 @@ vec2 unitToOctahedral(vec3 v)
 uint packNormal(vec3 n) { return packSnorm2x16(unitToOctahedral(n)); }
 vec3 unpackNormal(uint bits) { return octahedralToUnit(unpackSnorm2x16(bits)); }
 
+/// A direction about z, by its cosine.
+vec3 cosineDirection(vec2 u)
+{
+    float r = sqrt(u.x), phi = 2.0 * kPi * u.y;
+    return vec3(r * cos(phi), r * sin(phi), sqrt(max(0.0, 1.0 - u.x)));
+}
+
 /// Origin for a ray that leaves a surface: moved off it by a few ulps along the geometric normal
 /// (Waechter & Binder 2019, "A Fast and Robust Method for Avoiding Self-Intersection").
 vec3 offsetOrigin(vec3 p, vec3 n)

@@ -66,6 +66,24 @@ vec2 nextPair(inout Sampler s)
     return vec2(toUnitFloat(bits.x), toUnitFloat(bits.y));
 }
 
+/// One item of a stream, each with probability weight / sum of weights, by a single random number (Chao 1982).
+struct Reservoir
+{
+    float u; // uniform in [0,1), whatever has been offered
+    float sum;
+    uint chosen;
+};
+
+void offer(inout Reservoir r, float weight, uint item)
+{
+    r.sum += weight;
+    float scaled = r.u * r.sum;
+    bool takes = scaled < weight;
+    if (takes)
+        r.chosen = item;
+    r.u = clamp(takes ? scaled / weight : (scaled - weight) / max(r.sum - weight, 1e-30), 0.0, 0.9999999);
+}
+
 /// floor(count * bits / 2^32): a uniform index, exact for any count.
 uint toIndex(uint bits, uint count)
 {

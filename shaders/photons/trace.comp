@@ -26,7 +26,16 @@ struct PathState // between two vertices
     uint stored;   // scattering vertices so far
 };
 
+const float kMostGain = 16.0; // at grazing angles few photons would carry much
+
 bool finite(vec3 v) { return !any(isnan(v)) && !any(isinf(v)); }
+
+/// What a photon that arrives along `direction` gives a surface whose shading normal is not that of its geometry: the light
+/// that a path from the eye would find there goes by the cosine to the one, the photons that arrive by that to the other.
+float shadingGain(Surface s, vec3 direction)
+{
+    return clamp(dot(s.normal, direction) / dot(s.geometric_normal, direction), 0.0, kMostGain);
+}
 
 void store(uint path, PathState state, Surface s, vec3 direction)
 {
@@ -34,7 +43,8 @@ void store(uint path, PathState state, Surface s, vec3 direction)
     if (!wanted || !finite(state.power) || state.power == vec3(0.0))
         return;
     uint slot = state.stored * params.path_count + path;
-    photons[slot] = Photon(s.position, packNormal(direction), state.power, packNormal(s.geometric_normal));
+    vec3 power = state.power * shadingGain(s, direction);
+    photons[slot] = Photon(s.position, packNormal(direction), power, packNormal(s.geometric_normal));
     flags[slot] = 1u;
 }
 
@@ -69,6 +79,8 @@ bool scatter(uint path, uint event, Hit hit, inout PathState state, inout Ray ra
     vec3 weight = next.weight;
     if (entered && !b.thin) // power is not squeezed into a smaller solid angle as radiance is
         weight *= b.eta * b.eta;
+    // The adjoint of what a path from the eye does there (Veach 1997, 5.3).
+    weight *= shadingGain(s, direction) / max(shadingGain(s, wi), 1.0 / kMostGain);
     vec3 scattered = state.power * weight;
     float survival = min(1.0, luminance(scattered) / max(luminance(state.power), 1e-30));
     if (choice.y >= survival)

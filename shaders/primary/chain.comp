@@ -47,6 +47,8 @@ vec3 meetSurface(Hit hit, uint path, inout ShadingPoint point, inout DiffusePoin
         throughput /= b.smooth_specular ? p.diffuse : 1.0;
         vec3 reflectance = throughput * diffuseReflectance(b, max(0.0, -dot(s.normal, direction)));
         point = ShadingPoint(s.position, hit.slot, direction, params.depth, throughput, hit.barycentrics);
+        // Irradiance will be that of the smooth normal: even light over its hemisphere gives a bent one this much of it.
+        reflectance *= 0.5 + 0.5 * dot(s.normal, s.smooth_normal);
         diffuse = DiffusePoint(s.position, unitToOctahedral(s.smooth_normal), reflectance);
         return light;
     }

@@ -44,6 +44,7 @@ std::unique_ptr<Cut> GiTest::cutOf(const SceneGpu& scene, const std::vector<gpu:
 {
     const uint32_t count = uint32_t(nodes.size());
     std::vector<gpu::vec4> spheres;
+    std::vector<uint32_t> directions; // down on every node
     for (const gpu::CutNode& n : nodes)
         spheres.push_back({n.center.x, n.center.y, n.center.z, n.support});
     auto cut = std::make_unique<Cut>();
@@ -52,9 +53,13 @@ std::unique_ptr<Cut> GiTest::cutOf(const SceneGpu& scene, const std::vector<gpu:
     const Buffer on_gpu = upload("test.spheres", spheres);
     submit(scene, [&](Recorder& rec) { cut->tree->record(rec, on_gpu, cut->size); });
     for (const uint32_t i : contents<uint32_t>(cut->tree->order(), count))
+    {
         cut->sorted.push_back(nodes[i]);
+        directions.push_back(packedNormal(-1 * unpackedNormal(nodes[i].normal)));
+    }
     cut->nodes = device().uploadTexels<gpu::CutNode>("test.cut_nodes", cut->sorted);
-    cut->gpu.emplace(CutStage::Output{.size = cut->size, .nodes = cut->nodes, .tree = *cut->tree});
+    cut->directions = upload("test.cut_directions", directions);
+    cut->gpu.emplace(CutStage::Output{.size = cut->size, .nodes = cut->nodes, .directions = cut->directions, .tree = *cut->tree});
     return cut;
 }
 

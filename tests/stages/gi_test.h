@@ -35,7 +35,7 @@ struct PhotonMap
 struct Cut
 {
     std::optional<Tree> tree;
-    Buffer size, nodes;
+    Buffer size, nodes, directions;
     std::optional<CutStage::Output> gpu;
     std::vector<gpu::CutNode> sorted; // as the tree
 };

@@ -1,0 +1,45 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "shaders/gather/gather.h"
+#include "shaders/lib/path.glsl"
+
+// Rays by the diffuse lobe of every shading point of a band of pixels. One thread per pixel.
+
+layout(local_size_x = kRaysGroupSize) in;
+layout(push_constant, scalar) uniform Params { PixelGatherParams params; };
+
+layout(set = 1, binding = 0, scalar) readonly buffer Points { ShadingPoint points[]; };
+layout(set = 1, binding = 1, scalar) buffer Queue { QueueSize queue; };
+layout(set = 1, binding = 2, scalar) writeonly buffer Rays { Ray rays[]; };
+layout(set = 1, binding = 3, scalar) writeonly buffer States { GatherState states[]; };
+layout(set = 1, binding = 4, scalar) writeonly buffer GatheredBlock { Gathered gathered[]; };
+
+void main()
+{
+    uint i = gl_GlobalInvocationID.x;
+    if (i >= params.point_count)
+        return;
+    uint first = i * params.ray_count, pixel = params.first_point + i;
+    for (uint k = 0u; k < params.ray_count; ++k)
+        gathered[first + k] = Gathered(vec3(0.0), 0.0); // what no ray brings
+    ShadingPoint point = points[pixel];
+    if (point.slot == kNone)
+        return;
+    Surface s = surfaceAt(point.slot, point.barycentrics, point.direction);
+    Bsdf b = bsdfAt(materialAt(s), s.front);
+    mat3 frame = frameAround(s.normal);
+    vec3 wo = -point.direction * frame;
+    if (diffuseReflectance(b, wo.z) == vec3(0.0))
+        return;
+    for (uint k = 0u; k < params.ray_count; ++k)
+    {
+        Sampler sampler_ = Sampler(hash(params.seed, pixel), params.first_ray + k, 0u);
+        vec3 local = cosineDirection(nextPair(sampler_));
+        vec3 wi = frame * local;
+        if (!sidesAgree(s, wi, local.z))
+            continue;
+        states[first + k] = GatherState(point.throughput * evaluateBsdf(b, wo, local).diffuse * kPi, kNone, 0u);
+        rays[atomicAdd(queue.count, 1u)] = leavingRay(s, wi, kInfinity, first + k);
+    }
+}

@@ -1,0 +1,11 @@
+// The light that falls on a point, as photons tell of it. Functions only.
+#ifndef LIB_INCIDENT_GLSL
+#define LIB_INCIDENT_GLSL
+
+struct Incident
+{
+    vec3 irradiance; // W/m^2
+    vec3 direction;  // unit, the way that one of its photons travelled; each stands here as often as it has power
+};
+
+#endif
