@@ -223,12 +223,14 @@ CutStage::Output GlobalIllumination::recordCut(const Frame& frame, const PhotonT
 {
     const Settings& settings = frame.settings;
     const auto scope = frame.rec.scope("cut");
+    const float shrink = shrunkRadius(1, frame.index);
     const CutStage::Input in{.mode = CutMode(settings.cut_mode),
                              .iterations = settings.cut_iterations,
                              .difference = settings.cut_difference,
                              .photon_count = settings.density_photons,
                              .radius = shrunkRadius(settings.density_radius * diagonal_, frame.index),
-                             .shrink = shrunkRadius(1, frame.index),
+                             .shrink = shrink,
+                             .fewest = std::max(uint32_t(gpu::kCutFewest * shrink * shrink), 1u),
                              .probes = settings.cut_probes,
                              .seed = frame.seed};
     if (made_cut_ == in)

@@ -39,7 +39,8 @@ CutStage::Output CutStage::record(Recorder& rec, const RayStage& rays, const Pho
                           .difference = in.difference,
                           .photon_count = in.photon_count,
                           .radius = in.radius,
-                          .spread = gpu::kCutSpread * in.shrink};
+                          .spread = gpu::kCutSpread * in.shrink,
+                          .fewest = in.fewest};
     rec.clear(arrivals_);
     rec.runIndirect(summarise_, map.size, 0, NoParams{},
                     {{"Size", map.size},

@@ -49,13 +49,13 @@ GPU_CONST uint kCutGroupSize = 64u;
 GPU_CONST uint kPartialMeans = 64u;   // groups that sum E~
 GPU_CONST uint kPartialGroupSize = 256u;
 GPU_CONST uint kCutLevelNodes = 4096u; // nodes of the level that E_min is taken from
-GPU_CONST uint kCutFewest = 8u;        // nodes of fewer photons are not divided
+GPU_CONST uint kCutFewest = 8u;        // photons of a node that say something of their density
 
 // A node's support in radii of density estimation: wider is smoother and slower, narrower sharper. 0.7 to 1 are near the
 // best in all scenes.
 GPU_CONST float kCutSpread = 0.8f;
 GPU_CONST uint kCutProbeCapacity = 1u << 20u; // rays that feel for surfaces, of all nodes
-GPU_CONST float kMostUncovered = 4.0f;        // a node's light grows no more than this
+GPU_CONST float kMostUncovered = 8.0f;        // a node's light grows no more than this
 
 struct RepresentParams
 {
@@ -78,8 +78,9 @@ struct CutParams
     uint photon_count; // k of the density estimation
     float radius;      // metres, of the density estimation at most
     float spread;      // a node's support, in radii of the density estimation at its centre
+    uint fewest;       // nodes of fewer photons are not divided
 };
-GPU_SIZE(CutParams, 24);
+GPU_SIZE(CutParams, 28);
 
 GPU_NAMESPACE_END
 #endif

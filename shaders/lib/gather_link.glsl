@@ -12,9 +12,11 @@ vec3 reflectedLight(Bsdf b, mat3 frame, vec3 wo, Incident light)
 {
     vec3 wi = -light.direction * frame;
     wi.z = max(wi.z, 0.05); // the shading normal of the photon's place was another
-    b.alpha = max(b.alpha, kLeastAlpha);
-    BsdfValue f = evaluateBsdf(b, wo, normalize(wi));
-    return (f.diffuse + f.specular) * light.irradiance;
+    Bsdf wide = b;
+    wide.alpha = max(b.alpha, kLeastAlpha);
+    BsdfValue f = evaluateBsdf(wide, wo, normalize(wi));
+    vec3 kept = wide.alpha == b.alpha ? vec3(1.0) : glossyReflectance(b, wo.z) / max(glossyReflectance(wide, wo.z), vec3(1e-6));
+    return (f.diffuse + f.specular * kept) * light.irradiance;
 }
 
 struct Link

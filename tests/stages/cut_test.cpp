@@ -235,6 +235,35 @@ TEST_F(Cuts, StandEqualPhotons)
     }
 }
 
+/// Each of a node's photons speaks for it as often as it has power.
+TEST_F(Cuts, TellTheDirectionOfOnePhotonByPower)
+{
+    constexpr uint32_t kPhotons = 6, kCuts = 600;
+    std::vector<gpu::Photon> photons; // so near one another that they are one node
+    for (uint32_t i = 0; i < kPhotons; ++i)
+        photons.push_back({.position = {0.1f + 1e-3f * float(i), 0, 0.2f},
+                           .direction = packedNormal(normalized({0.1 * i, -1, 0})),
+                           .power = {float(i), 0.5f * float(i), 0},
+                           .normal = packedNormal({0, 1, 0})});
+    const auto map = mapOf(*scene_, photons);
+    const CutStage stage(device(), *scene_, kPhotons);
+    std::map<uint32_t, uint32_t> times;
+    for (uint32_t seed = 0; seed < kCuts; ++seed)
+    {
+        CutStage::Input in = kRefined;
+        in.seed = seed;
+        std::optional<CutStage::Output> out;
+        submit(*scene_, [&](Recorder& rec) { out.emplace(stage.record(rec, map->rays, *map->gpu, in)); });
+        ASSERT_EQ(countOf(out->size), 1u);
+        ++times[contents<uint32_t>(out->directions, 1)[0]];
+    }
+    for (uint32_t i = 0; i < kPhotons; ++i)
+    {
+        const double share = 2.0 * i / (kPhotons * (kPhotons - 1)), deviation = std::sqrt(kCuts * share * (1 - share));
+        EXPECT_NEAR(times[photons[i].direction], kCuts * share, 4 * deviation) << i;
+    }
+}
+
 TEST_F(Cuts, StartWithTheCoarseCutOfAlgorithm3)
 {
     const auto map = roomMap(4000);

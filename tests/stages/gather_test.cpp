@@ -1,6 +1,7 @@
 // Final gathering over cuts and photons of known light, against formulas.
 #include "runtime/stages/gather.h"
 #include "tests/stages/gi_test.h"
+#include "tests/stages/gltf_brdf.h"
 #include "tests/stages/ray_test.h"
 
 #include <numbers>
@@ -77,10 +78,11 @@ protected:
 
     std::vector<gpu::Sample> gathered(const SceneGpu& scene, const std::vector<gpu::Sample>& samples,
                                       const std::vector<gpu::CutNode>& nodes, CutMode mode = CutMode::kRefined,
-                                      uint32_t seed = 1, const std::vector<gpu::Photon>& photons = {})
+                                      uint32_t seed = 1, const std::vector<gpu::Photon>& photons = {},
+                                      const std::function<Double3(const gpu::CutNode&)>& direction = {})
     {
         const uint32_t count = uint32_t(samples.size());
-        const auto cut = cutOf(scene, nodes);
+        const auto cut = cutOf(scene, nodes, direction);
         const auto map = mapOf(scene, photons);
         const Samples on_gpu{.size = sizeBuffer(count), .samples = upload("test.samples", samples), .spheres = {}, .kept = sizeBuffer(0)};
         const GatherStage stage(device(), scene, std::max(count, 1u), kRays);
@@ -145,6 +147,45 @@ TEST_F(Gather, SeesALitCeilingUnderItsFormFactor)
     fmt::print("  mean difference {:+.5f}, standard deviation of independent rays {:.5f}\n", difference / 64,
                std::sqrt(variance) / 64);
     EXPECT_LE(std::abs(difference), 4 * std::sqrt(variance));
+}
+
+/// Light from one side on a rough ceiling: what of it comes down is up to the BRDF.
+TEST_F(Gather, SeesRoughSurfacesByTheirBrdf)
+{
+    const GltfMaterial plastic{.base_color = {0.3, 0.3, 0.3}, .roughness = 0.6};
+    SceneBuilder builder;
+    builder.box(kLow, kHigh, builder.material({{"pbrMetallicRoughness",
+                                                {{"baseColorFactor", {0.3, 0.3, 0.3, 1}},
+                                                 {"metallicFactor", 0},
+                                                 {"roughnessFactor", plastic.roughness}}}}),
+                true);
+    const auto scene = load(builder.compile());
+    const Double3 place{0.1, 0, -0.2}, light = normalized({0.9, -0.3, 0.1}); // towards the light, below the ceiling
+    const auto nodes = wallNodes([](Double3 normal) { return normal.y < 0 ? gpu::vec3{1, 1, 1} : gpu::vec3{}; });
+    constexpr uint32_t kSamples = 400;
+    const std::vector<gpu::Sample> samples(kSamples, sampleAt({float(place.x), 0, float(place.z)}, {0, 1, 0}));
+    double sum = 0, squares = 0;
+    for (const gpu::Sample& sample :
+         gathered(*scene, samples, nodes, CutMode::kRefined, 1, {}, [&](const gpu::CutNode&) { return -1 * light; }))
+    {
+        sum += sample.irradiance.x;
+        squares += double(sample.irradiance.x) * sample.irradiance.x;
+    }
+    double want = 0; // the integral over the ceiling, of 200 x 200 patches
+    constexpr int kPatches = 200;
+    const double width = kHigh.x - kLow.x, depth = kHigh.z - kLow.z, patch = width * depth / (kPatches * kPatches);
+    for (int i = 0; i < kPatches; ++i)
+        for (int k = 0; k < kPatches; ++k)
+        {
+            const Double3 to = Double3{kLow.x + width * (i + 0.5) / kPatches, kHigh.y, kLow.z + depth * (k + 0.5) / kPatches} - place;
+            const Double3 d = normalized(to); // local to the ceiling: its z is -y
+            const double f = gltfBrdf(plastic, {-d.x, -d.z, d.y}, {light.x, light.z, -light.y})[0];
+            want += f * d.y * d.y / length2(to) * patch;
+        }
+    const double mean = sum / kSamples, error = std::sqrt((squares / kSamples - mean * mean) / kSamples);
+    fmt::print("  {:.5f} of {:.5f} W/m^2, standard error {:.5f}\n", mean, want, error);
+    EXPECT_LT(error, 0.01 * want);
+    EXPECT_NEAR(mean, want, 4 * error + 1e-3 * want); // and the octahedral direction's rounding
 }
 
 /// Distance from x along d to the walls of a box around it, or to those of them that `exists` says; 0: nothing there.

@@ -20,10 +20,12 @@ protected:
     /// Expects a closed room whose walls all glow to show what they emit and reflect without end.
     void expectFurnace(double albedo, uint32_t bounces)
     {
-        constexpr uint32_t kFrames = 8;
+        constexpr uint32_t kFrames = 24; // the last of which gather at every pixel
         Settings settings = smallSettings();
         settings.photon_count = 10000; // fewer make wider density estimates, which lose more light at the room's edges
         settings.photon_bounces = bounces;
+        settings.sample_count = 512; // as many rays as 16 a pixel
+        settings.gather_rays = 64;
         SceneBuilder builder;
         const nlohmann::json glowing =
             with(emitter(1), {{"pbrMetallicRoughness", {{"baseColorFactor", {albedo, albedo, albedo, 1}}}}});

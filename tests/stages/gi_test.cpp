@@ -40,11 +40,12 @@ std::unique_ptr<PhotonMap> GiTest::mapOf(const SceneGpu& scene, const std::vecto
     return map;
 }
 
-std::unique_ptr<Cut> GiTest::cutOf(const SceneGpu& scene, const std::vector<gpu::CutNode>& nodes)
+std::unique_ptr<Cut> GiTest::cutOf(const SceneGpu& scene, const std::vector<gpu::CutNode>& nodes,
+                                   const std::function<Double3(const gpu::CutNode&)>& direction)
 {
     const uint32_t count = uint32_t(nodes.size());
     std::vector<gpu::vec4> spheres;
-    std::vector<uint32_t> directions; // down on every node
+    std::vector<uint32_t> directions;
     for (const gpu::CutNode& n : nodes)
         spheres.push_back({n.center.x, n.center.y, n.center.z, n.support});
     auto cut = std::make_unique<Cut>();
@@ -55,7 +56,7 @@ std::unique_ptr<Cut> GiTest::cutOf(const SceneGpu& scene, const std::vector<gpu:
     for (const uint32_t i : contents<uint32_t>(cut->tree->order(), count))
     {
         cut->sorted.push_back(nodes[i]);
-        directions.push_back(packedNormal(-1 * unpackedNormal(nodes[i].normal)));
+        directions.push_back(packedNormal(direction ? direction(nodes[i]) : -1 * unpackedNormal(nodes[i].normal)));
     }
     cut->nodes = device().uploadTexels<gpu::CutNode>("test.cut_nodes", cut->sorted);
     cut->directions = upload("test.cut_directions", directions);

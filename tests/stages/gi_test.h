@@ -75,7 +75,9 @@ protected:
     /// The map of exactly these photons.
     static std::unique_ptr<PhotonMap> mapOf(const SceneGpu& scene, const std::vector<gpu::Photon>& photons);
     /// The cut of exactly these nodes.
-    static std::unique_ptr<Cut> cutOf(const SceneGpu& scene, const std::vector<gpu::CutNode>& nodes);
+    /// @param direction in which light arrives at a node; without it, straight down on its surface
+    static std::unique_ptr<Cut> cutOf(const SceneGpu& scene, const std::vector<gpu::CutNode>& nodes,
+                                      const std::function<Double3(const gpu::CutNode&)>& direction = {});
     /// The photons that a stage has stored.
     static std::vector<gpu::Photon> stored(const PhotonStage::Output& out);
     /// The photons that a global or caustic emission stores.

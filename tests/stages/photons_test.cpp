@@ -207,6 +207,31 @@ TEST_F(Photons, LoseWhatSurfacesAbsorbAtEveryBounce)
     }
 }
 
+/// A path from the eye finds light by its cosine to the shading normal, and what is found there is seen by the cosine to the
+/// geometric one: photons must agree, or surfaces with normal maps glow (Veach 1997, 5.3).
+TEST_F(Photons, LightShadingNormalsAsTheEyeSeesThem)
+{
+    constexpr double kTilt = 0.5, kAlbedo = 0.9, kInner = 0.1, kOuter = 0.11;
+    SceneBuilder builder;
+    addRoom(builder, lambert(0.001));
+    builder.quad({-0.2f, 1, 0.2f}, {0.4f, 0, 0}, {0, 0, -0.4f}, builder.material(lambert(kAlbedo)),
+                 {float(std::sin(kTilt)), float(std::cos(kTilt)), 0});
+    const nlohmann::json cone{{"innerConeAngle", kInner}, {"outerConeAngle", kOuter}};
+    builder.light({{"type", "spot"}, {"intensity", 100}, {"spot", cone}},
+                  {{"translation", {0, 2.5, 0}}, {"rotation", kDownwards["rotation"]}});
+    const auto scene = load(builder.compile());
+    PhotonStage::Input in = firstHits();
+    const auto arrived = emit(*scene, PhotonKind::kGlobal, in);
+    in.bounce_limit = 2;
+    const auto photons = emit(*scene, PhotonKind::kGlobal, in);
+    const double cosine = std::cos(kTilt), falloff = std::cos(kInner) - std::cos(kOuter);
+    const double irradiance = 100 * 2 * kPi * (1 - std::cos(kInner) + falloff / 3) * cosine; // the beam's mean is straight down
+    expectPower(powerOf(arrived, kAll), irradiance * Double3(1, 1, 1), 0.05, "irradiance");
+    // Even radiance over the directions above both planes, whose projected solid angle is pi (1 + cosine) / 2.
+    expectPower(powerOf(std::span(photons).subspan(arrived.size()), kAll),
+                kAlbedo * irradiance * (1 + cosine) / 2 * Double3(1, 1, 1), 0.05, "reflected");
+}
+
 TEST_F(Photons, PassGlassWithoutLoss)
 {
     SceneBuilder builder;

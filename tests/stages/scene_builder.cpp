@@ -72,8 +72,13 @@ void SceneBuilder::mesh(const std::vector<gpu::vec3>& positions, const std::vect
 
 void SceneBuilder::quad(gpu::vec3 corner, gpu::vec3 edge_u, gpu::vec3 edge_v, int material)
 {
+    quad(corner, edge_u, edge_v, material, normalizeOr(cross(edge_u, edge_v), {0, 1, 0}));
+}
+
+void SceneBuilder::quad(gpu::vec3 corner, gpu::vec3 edge_u, gpu::vec3 edge_v, int material, gpu::vec3 normal)
+{
     const gpu::vec3 b = corner + edge_u, c = corner + edge_u + edge_v, d = corner + edge_v;
-    const std::vector<gpu::vec3> normals(6, normalizeOr(cross(edge_u, edge_v), {0, 1, 0}));
+    const std::vector<gpu::vec3> normals(6, normal);
     mesh({corner, b, c, corner, c, d}, normals, {0, 0, 1, 0, 1, 1, 0, 0, 1, 1, 0, 1}, material);
 }
 

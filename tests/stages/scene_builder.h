@@ -25,6 +25,8 @@ public:
     /// A parallelogram of two triangles in world space; its front is where cross(edge_u, edge_v) points.
     /// TEXCOORD_0 runs from 0 to 1 along both edges.
     void quad(gpu::vec3 corner, gpu::vec3 edge_u, gpu::vec3 edge_v, int material);
+    /// The same with another shading normal than its own.
+    void quad(gpu::vec3 corner, gpu::vec3 edge_u, gpu::vec3 edge_v, int material, gpu::vec3 normal);
     /// A horizontal square of `side` metres about (0, height, 0), facing up.
     void floor(float side, float height, int material);
     /// An axis-parallel box, faces outwards or inwards.
