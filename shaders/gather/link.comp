@@ -23,11 +23,11 @@ layout(set = 1, binding = 10, scalar) readonly buffer Directions { uint directio
 #include "shaders/lib/ray.glsl"
 #include "shaders/lib/cut_light.glsl"
 
-Incident lightAt(vec3 x, vec3 n, float u)
+Incident lightAt(vec3 x, vec3 n, uint random)
 {
     if (params.mode == kCutNearest)
         return nearestCutLight(x, n, params.radius * params.radius);
-    return cutLight(x, n, u);
+    return cutLight(x, n, random);
 }
 #include "shaders/lib/gather_link.glsl"
 #include "shaders/gather/link_body.glsl"

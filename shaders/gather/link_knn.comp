@@ -22,10 +22,10 @@ layout(set = 1, binding = 9) uniform usamplerBuffer Photons;
 #include "shaders/lib/ray.glsl"
 #include "shaders/lib/density.glsl"
 
-Incident lightAt(vec3 x, vec3 n, float u)
+Incident lightAt(vec3 x, vec3 n, uint random)
 {
     return densityLight(x, n, size.count, params.photon_count, params.radius * params.radius,
-                        params.radius * params.radius / 64.0, u);
+                        params.radius * params.radius / 64.0, random);
 }
 #include "shaders/lib/gather_link.glsl"
 #include "shaders/gather/link_body.glsl"

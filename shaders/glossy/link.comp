@@ -23,7 +23,7 @@ layout(set = 1, binding = 10, scalar) readonly buffer Directions { uint directio
 #include "shaders/lib/ray.glsl"
 #include "shaders/lib/cut_light.glsl"
 
-Incident lightAt(vec3 x, vec3 n, float u) { return cutLight(x, n, u); }
+Incident lightAt(vec3 x, vec3 n, uint random) { return cutLight(x, n, random); }
 #include "shaders/lib/gather_link.glsl"
 
 void main()

@@ -16,11 +16,11 @@ Incident nearestCutLight(vec3 x, vec3 n, float radius2)
 }
 
 /// Light at x: the sum of what the cut nodes around it spread there. None where no photon fell near: what light there is
-/// has gone to the places where photons fell. @param u random, in [0,1)
-Incident cutLight(vec3 x, vec3 n, float u)
+/// has gone to the places where photons fell. @param random bits
+Incident cutLight(vec3 x, vec3 n, uint random)
 {
     vec3 sum = vec3(0.0);
-    Reservoir speaker = Reservoir(u, 0.0, kNone);
+    Reservoir speaker = Reservoir(random, 0.0, kNone);
     uint first, end;
     beginRanges(cut_size.count);
     while (nextRange(x, 0.0, first, end))

@@ -108,11 +108,11 @@ DensityEstimate estimateIrradiance(vec3 x, vec3 n, uint photon_count, uint wante
     return DensityEstimate(sum * (3.0 * kInvPi / within2), within2);
 }
 
-/// The photons' light itself. @param u random, in [0,1)
-Incident densityLight(vec3 x, vec3 n, uint photon_count, uint wanted, float radius2, float guess2, float u)
+/// The photons' light itself. @param random bits
+Incident densityLight(vec3 x, vec3 n, uint photon_count, uint wanted, float radius2, float guess2, uint random)
 {
     DensityEstimate estimate = estimateIrradiance(x, n, photon_count, wanted, radius2, guess2);
-    Reservoir speaker = Reservoir(u, 0.0, kNone);
+    Reservoir speaker = Reservoir(random, 0.0, kNone);
     uint first, end;
     beginRanges(photon_count);
     while (nextRange(x, estimate.radius2, first, end))

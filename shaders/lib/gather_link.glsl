@@ -1,5 +1,5 @@
 // One link of a gathering ray's path: at a surface that scatters it reads the light there; a mirror or glass sends it on.
-// The kernel defines `Incident lightAt(vec3 x, vec3 n, float u)`, u random, before it includes this. Functions only.
+// The kernel defines `Incident lightAt(vec3 x, vec3 n, uint random)` before it includes this. Functions only.
 #ifndef LIB_GATHER_LINK_GLSL
 #define LIB_GATHER_LINK_GLSL
 #include "shaders/gather/gather.h"
@@ -50,14 +50,15 @@ Link followLink(Ray ray, Hit hit, inout GatherState state, Sampler sampler_, boo
     mat3 frame = frameAround(s.normal);
     vec3 wo = -ray.direction * frame;
     LobeProbabilities p = lobeProbabilities(b, wo.z);
-    vec2 choice = nextPair(sampler_);
-    if (!b.smooth_specular || choice.x < p.diffuse)
+    uvec2 bits = nextBits(sampler_);
+    float choice = toUnitFloat(bits.x);
+    if (!b.smooth_specular || choice < p.diffuse)
     {
-        Incident light = lightAt(s.position, s.geometric_normal, choice.y);
+        Incident light = lightAt(s.position, s.geometric_normal, bits.y);
         link.radiance += state.throughput * reflectedLight(b, frame, wo, light) / (b.smooth_specular ? p.diffuse : 1.0);
         return link;
     }
-    BsdfSample next = sampleBsdf(b, wo, choice.x, vec2(0.5));
+    BsdfSample next = sampleBsdf(b, wo, choice, vec2(0.5));
     vec3 wi = frame * next.wi;
     if (next.weight == vec3(0.0) || !sidesAgree(s, wi, next.wi.z))
         return link;

@@ -66,22 +66,20 @@ vec2 nextPair(inout Sampler s)
     return vec2(toUnitFloat(bits.x), toUnitFloat(bits.y));
 }
 
-/// One item of a stream, each with probability weight / sum of weights, by a single random number (Chao 1982).
+/// One item of a stream, each with probability weight / sum of weights (Chao 1982).
 struct Reservoir
 {
-    float u; // uniform in [0,1), whatever has been offered
+    uint random; // state of a linear congruential generator
     float sum;
-    uint chosen;
+    uint chosen; // kNone before the first
 };
 
 void offer(inout Reservoir r, float weight, uint item)
 {
+    r.random = r.random * 747796405u + 2891336453u;
     r.sum += weight;
-    float scaled = r.u * r.sum;
-    bool takes = scaled < weight;
-    if (takes)
+    if (toUnitFloat(r.random) * r.sum < weight)
         r.chosen = item;
-    r.u = clamp(takes ? scaled / weight : (scaled - weight) / max(r.sum - weight, 1e-30), 0.0, 0.9999999);
 }
 
 /// floor(count * bits / 2^32): a uniform index, exact for any count.
