@@ -91,7 +91,7 @@ Result<Settings> presetSettings(std::string_view name)
         settings.direct_candidates = 4;
         settings.photon_count = 3000;
         settings.photon_bounces = 6;
-        settings.density_photons = 16;
+        settings.cut_probes = 8;
         settings.cut_iterations = 1;
         settings.sample_count = 384;
         settings.sample_iterations = 1;

@@ -21,10 +21,10 @@ struct Settings
     uint32_t direct_candidates = 8;
     uint32_t photon_count = 50000; // paths
     uint32_t photon_bounces = 12;
-    uint32_t density_photons = 25;
+    uint32_t density_photons = 16;
     float density_radius = 0.03f; // of the scene's diagonal
     uint32_t cut_mode = 2; // CutMode
-    uint32_t cut_probes = 8;
+    uint32_t cut_probes = 16;
     uint32_t cut_iterations = 3;
     float cut_difference = 0.2f;
     uint32_t samples_mode = 2; // SamplesMode
