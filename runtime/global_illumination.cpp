@@ -308,7 +308,8 @@ void GlobalIllumination::recordIndirect(const Frame& frame, const InterpolateSta
 bool GlobalIllumination::gathersAtPixels(const Frame& frame) const
 {
     const uint32_t rays = gather_.raysPerPixel(frame.pixel_count);
-    return frame.settings.view == gpu::kViewNone && frame.shows(gpu::kTermIndirect) &&
+    return frame.settings.view != gpu::kViewIrradiance && frame.shows(gpu::kTermIndirect) &&
+           gather_.suitsPixels(frame.pixel_count) &&
            frame.index >= std::max(kOwnRays / rays, kLeastInterpolated);
 }
 

@@ -40,7 +40,8 @@ CutStage::Output CutStage::record(Recorder& rec, const RayStage& rays, const Pho
                           .photon_count = in.photon_count,
                           .radius = in.radius,
                           .spread = gpu::kCutSpread * in.shrink,
-                          .fewest = in.fewest};
+                          .fewest = in.fewest,
+                          .most_nodes = gpu::kCutProbeCapacity / std::max(in.probes, 1u)};
     rec.clear(arrivals_);
     rec.runIndirect(summarise_, map.size, 0, NoParams{},
                     {{"Size", map.size},

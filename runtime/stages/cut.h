@@ -25,7 +25,7 @@ public:
         uint32_t photon_count; // k of density estimation
         float radius;          // metres, of density estimation at most
         float shrink;    // of the nodes' supports, <= 1: in a standing picture they may be as noisy as they are sharp
-        uint32_t fewest = gpu::kCutFewest; // nodes of fewer photons are not divided; kCutFewest, or less where supports have shrunk
+        uint32_t fewest = gpu::kCutFewest; // photons of a node that is not divided further: less where supports have shrunk
         uint32_t probes; // rays that a node feels for its surface with; 0: it is taken for a plane
         uint32_t seed;
         bool operator==(const Input&) const = default; // equal input over one map gives one cut

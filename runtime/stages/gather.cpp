@@ -84,14 +84,9 @@ void GatherStage::recordPixels(Recorder& rec, const RayStage& rays, const Photon
                                           .first_ray = pixels.frame * params.ray_count,
                                           .seed = pixels.seed};
         params.seed = traceSeed(in.seed, first, 0);
-        rays.reset(rec, queue_.size);
+        rays.resize(rec, queue_.size, here.point_count * here.ray_count);
         rec.run(generate_pixels_, here.point_count, here,
-                {{"Points", pixels.points},
-                 {"Queue", queue_.size},
-                 {"Rays", queue_.rays},
-                 {"States", states_},
-                 {"GatheredBlock", gathered_}});
-        rays.close(rec, queue_.size);
+                {{"Points", pixels.points}, {"Rays", queue_.rays}, {"States", states_}});
         rays.closest(rec, queue_, hits_, params.seed);
         if (guide)
             guide->mark(rec, queue_, max_rays_, hits_, first > 0);

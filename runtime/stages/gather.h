@@ -7,6 +7,8 @@
 #include "shaders/gather/gather.h"
 #include "shaders/gather/harmonics.h"
 
+#include <algorithm>
+
 class GatherStage
 {
 public:
@@ -39,8 +41,10 @@ public:
         uint32_t frame; // in a standing picture: its rays continue those of the frames before
         uint32_t seed;  // of the picture
     };
-    /// Rays of every pixel and frame that cost as much as those of the samples; one at least.
-    uint32_t raysPerPixel(uint32_t pixel_count) const { return std::max(max_rays_ / pixel_count, 1u); }
+    /// Rays of every pixel that cost as much as those of the samples; at least one, which may cost more.
+    uint32_t raysPerPixel(uint32_t pixel_count) const { return std::clamp(max_rays_ / pixel_count, 1u, kMostPixelRays); }
+    /// Whether that is worth while: else a picture takes many passes, as there is room for so few rays.
+    bool suitsPixels(uint32_t pixel_count) const { return uint64_t(max_rays_) * kMostPasses >= pixel_count; }
     /// Indirect diffuse light without samples and interpolation: noise, and no blur but that of the cut.
     void recordPixels(Recorder& rec, const RayStage& rays, const PhotonTreeStage::Output& map, const CutStage::Output& cut,
                       const Input& in, const PixelInput& pixels, GuideStage* guide = nullptr) const;
@@ -51,6 +55,8 @@ public:
 private:
     void look(Recorder& rec, const RayStage& rays, const SamplesStage::Output& samples, const gpu::GatherParams& params,
               GuideStage* guide) const;
+
+    static constexpr uint32_t kMostPixelRays = 256, kMostPasses = 8;
 
     gpu::GatherParams paramsOf(const Input& in) const;
     /// Follows the rays of queue_, whose first hits are in hits_, to gathered_.

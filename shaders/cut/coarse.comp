@@ -27,7 +27,7 @@ bool isCandidate(uint child)
     if ((child & kTreeLeafBit) != 0u)
         return false;
     PhotonNode node = photonNode(child);
-    return node.count >= params.fewest && node.irradiance > threshold.irradiance;
+    return node.count >= fewestPhotons(params) && node.irradiance > threshold.irradiance;
 }
 
 bool isDivided(uint child) { return (child & kTreeLeafBit) == 0u && divided[child] != 0u; }
@@ -39,9 +39,9 @@ bool shouldDivide(uint node)
         return true;
     PhotonNode n = photonNode(node);
     if (params.mode == kCutLeaves)
-        return n.count > params.fewest || !n.flat_;
+        return n.count > fewestPhotons(params) || !n.flat_;
     if (!n.flat_)
-        return n.count > params.fewest;
+        return n.count > fewestPhotons(params);
     return isCandidate(left) && isCandidate(right);
 }
 

@@ -42,7 +42,7 @@ GPU_SIZE(PartialMean, 8);
 
 GPU_CONST uint kCutKnn = 0u;     // no cut: density estimation at every gather hit
 GPU_CONST uint kCutNearest = 1u; // the refined cut, read at its nearest node
-GPU_CONST uint kCutLeaves = 2u;  // the finest cut: nodes of kCutFewest photons at most
+GPU_CONST uint kCutLeaves = 2u;  // the finest cut: nodes of a few photons at most
 GPU_CONST uint kCutRefined = 3u; // Algorithm 3
 
 GPU_CONST uint kCutGroupSize = 64u;
@@ -78,9 +78,10 @@ struct CutParams
     uint photon_count; // k of the density estimation
     float radius;      // metres, of the density estimation at most
     float spread;      // a node's support, in radii of the density estimation at its centre
-    uint fewest;       // nodes of fewer photons are not divided
+    uint fewest;       // photons of a node that is not divided further
+    uint most_nodes;   // that there are probes for: the more photons, the more of them share a node
 };
-GPU_SIZE(CutParams, 28);
+GPU_SIZE(CutParams, 32);
 
 GPU_NAMESPACE_END
 #endif

@@ -40,7 +40,7 @@ void main()
     uint id = work[i];
     PhotonNode node = photonNode(id);
     // A node of few photons is not worth dividing: its children's estimates would share nearly all of theirs.
-    bool small = node.count < 2u * params.fewest;
+    bool small = node.count < 2u * fewestPhotons(params);
     if (params.last == 0u && !small && !node.flat_)
     {
         divide(id);

@@ -10,10 +10,8 @@ layout(local_size_x = kRaysGroupSize) in;
 layout(push_constant, scalar) uniform Params { PixelGatherParams params; };
 
 layout(set = 1, binding = 0, scalar) readonly buffer Points { ShadingPoint points[]; };
-layout(set = 1, binding = 1, scalar) buffer Queue { QueueSize queue; };
-layout(set = 1, binding = 2, scalar) writeonly buffer Rays { Ray rays[]; };
-layout(set = 1, binding = 3, scalar) writeonly buffer States { GatherState states[]; };
-layout(set = 1, binding = 4, scalar) writeonly buffer GatheredBlock { Gathered gathered[]; };
+layout(set = 1, binding = 1, scalar) writeonly buffer Rays { Ray rays[]; };
+layout(set = 1, binding = 2, scalar) writeonly buffer States { GatherState states[]; };
 
 void main()
 {
@@ -21,8 +19,8 @@ void main()
     if (i >= params.point_count)
         return;
     uint first = i * params.ray_count, pixel = params.first_point + i;
-    for (uint k = 0u; k < params.ray_count; ++k)
-        gathered[first + k] = Gathered(vec3(0.0), 0.0); // what no ray brings
+    for (uint k = 0u; k < params.ray_count; ++k) // where there is nothing to gather for they end at once
+        rays[first + k] = Ray(vec3(0.0), 0.0, vec3(0.0, 0.0, 1.0), first + k);
     ShadingPoint point = points[pixel];
     if (point.slot == kNone)
         return;
@@ -40,6 +38,6 @@ void main()
         if (!sidesAgree(s, wi, local.z))
             continue;
         states[first + k] = GatherState(point.throughput * evaluateBsdf(b, wo, local).diffuse * kPi, kNone, 0u);
-        rays[atomicAdd(queue.count, 1u)] = leavingRay(s, wi, kInfinity, first + k);
+        rays[first + k] = leavingRay(s, wi, kInfinity, first + k);
     }
 }

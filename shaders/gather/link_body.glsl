@@ -6,7 +6,9 @@ void main()
         return;
     Ray ray = loadRay(i);
     Hit hit = loadHit(i);
-    GatherState state = states[ray.path];
+    GatherState state = GatherState(vec3(0.0), kNone, 0u);
+    if (hit.slot != kNone) // a ray that gathers for nothing has none
+        state = states[ray.path];
     uint sample_ = ray.path / params.ray_count;
     Sampler sampler_ = Sampler(hash(params.seed, sample_), ray.path - sample_ * params.ray_count, 1u + params.depth);
     Link link = followLink(ray, hit, state, sampler_, false);

@@ -11,8 +11,9 @@ Incident nearestCutLight(vec3 x, vec3 n, float radius2)
 {
     uint nearest = nearestCutNode(x, n, radius2);
     if (nearest == kNone)
-        return Incident(vec3(0.0), -n);
-    return Incident(loadCutNode(nearest).irradiance, unpackNormal(directions[nearest]));
+        return Incident(vec3(0.0), -n, vec3(0.0));
+    vec3 irradiance = loadCutNode(nearest).irradiance;
+    return Incident(irradiance, unpackNormal(directions[nearest]), irradiance);
 }
 
 /// Light at x: the sum of what the cut nodes around it spread there. None where no photon fell near: what light there is
@@ -31,7 +32,10 @@ Incident cutLight(vec3 x, vec3 n, uint random)
             sum += irradiance;
             offer(speaker, luminance(irradiance), i);
         }
-    return Incident(sum, speaker.chosen == kNone ? -n : unpackNormal(directions[speaker.chosen]));
+    if (speaker.chosen == kNone)
+        return Incident(sum, -n, sum);
+    vec3 color = loadCutNode(speaker.chosen).irradiance;
+    return Incident(sum, unpackNormal(directions[speaker.chosen]), color * (speaker.sum / max(luminance(color), 1e-30)));
 }
 
 #endif

@@ -21,12 +21,11 @@ float photonDistance2(Photon photon, vec3 x, vec3 n)
 
 /// Squared distance within which there are `wanted` photons, or radius2 where there are fewer.
 /// @param guess2 of that distance; the search narrows and widens it, but a good one saves looking at photons far away
-/// @param found photons within that distance
 ///
 /// A caustic's focus may hold most photons of the map, and software Vulkan ends a thread's loops after 65535 rounds in all.
-/// So bins past the one that completes `wanted` close as soon as it does; where that one holds a throng, it is parted before
-/// all are counted if it is the first, and left out otherwise: at the rim of the disc photons weigh next to nothing.
-float nearestRadius2(vec3 x, vec3 n, uint photon_count, uint wanted, float radius2, float guess2, out uint found)
+/// So bins past the one that completes `wanted` close as soon as it does; where that one holds a throng, the disc up to it is
+/// parted anew before all are counted; if it is a narrow rim, it is left out: there photons weigh next to nothing.
+float nearestRadius2(vec3 x, vec3 n, uint photon_count, uint wanted, float radius2, float guess2)
 {
     uint bins[kDensityBins];
     float low = 0.0, high = min(guess2, radius2);
@@ -38,7 +37,7 @@ float nearestRadius2(vec3 x, vec3 n, uint photon_count, uint wanted, float radiu
         float width = (high - low) / float(kDensityBins);
         uint open = kDensityBins, looked = 0u;
         bool throng = false;
-        found = below;
+        uint found = below;
         uint first, end;
         beginRanges(photon_count);
         while (!throng && nextRange(x, low + float(open) * width, first, end))
@@ -67,13 +66,10 @@ float nearestRadius2(vec3 x, vec3 n, uint photon_count, uint wanted, float radiu
         }
         ++refinement;
         high = low + float(open) * width;
-        if (throng && open == 1u)
+        if (throng && open < 8u)
             continue;
         if (throng)
-        {
-            found -= bins[open - 1u];
             return high - width;
-        }
         if (found <= wanted + wanted / 16u)
             break;
         low = high - width;
@@ -93,8 +89,7 @@ struct DensityEstimate
 /// light away. @param guess2 of their squared distance
 DensityEstimate estimateIrradiance(vec3 x, vec3 n, uint photon_count, uint wanted, float radius2, float guess2)
 {
-    uint found;
-    float within2 = nearestRadius2(x, n, photon_count, wanted, radius2, guess2, found);
+    float within2 = nearestRadius2(x, n, photon_count, wanted, radius2, guess2);
     vec3 sum = vec3(0.0);
     uint first, end;
     beginRanges(photon_count);
@@ -122,7 +117,11 @@ Incident densityLight(vec3 x, vec3 n, uint photon_count, uint wanted, float radi
             if (d2 < estimate.radius2)
                 offer(speaker, luminance(loadPhoton(i).power) * square(1.0 - d2 / estimate.radius2), i);
         }
-    return Incident(estimate.irradiance, speaker.chosen == kNone ? -n : unpackNormal(loadPhoton(speaker.chosen).direction));
+    if (speaker.chosen == kNone)
+        return Incident(estimate.irradiance, -n, estimate.irradiance);
+    vec3 color = loadPhoton(speaker.chosen).power;
+    return Incident(estimate.irradiance, unpackNormal(loadPhoton(speaker.chosen).direction),
+                    color * (luminance(estimate.irradiance) / max(luminance(color), 1e-30)));
 }
 
 #endif

@@ -6,6 +6,7 @@ struct Incident
 {
     vec3 irradiance; // W/m^2
     vec3 direction;  // unit, the way that one of its photons travelled; each stands here as often as it has power
+    vec3 spoken;     // W/m^2: light of the same luminance in the colour of what that photon speaks for
 };
 
 #endif

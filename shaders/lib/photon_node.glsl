@@ -17,6 +17,9 @@ PhotonSums photonSums(uint i)
     return PhotonSums(photon.power, weight, weight * unpackNormal(photon.normal), weight * photon.position);
 }
 
+/// Photons of a node that is not divided further.
+uint fewestPhotons(CutParams params) { return max(params.fewest, size.count / params.most_nodes); }
+
 struct PhotonNode
 {
     vec3 center;      // metres

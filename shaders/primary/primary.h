@@ -46,7 +46,8 @@ struct DiffusePoint // what a shading point shows of the irradiance that falls o
 {
     vec3 position;    // metres, world
     vec2 normal;      // octahedral; the smooth one, before the normal map, on the viewer's side
-    vec3 reflectance; // towards the viewer: throughput x diffuse reflectance; 0: background, or nothing diffuse there
+    vec3 reflectance; // towards the viewer: throughput x diffuse reflectance x what even light
+                      // gives the bent normal of that which it gives the smooth one; 0: background, or nothing diffuse there
 };
 GPU_SIZE(DiffusePoint, 32);
 

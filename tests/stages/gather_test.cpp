@@ -3,6 +3,7 @@
 #include "tests/stages/gi_test.h"
 #include "tests/stages/gltf_brdf.h"
 #include "tests/stages/ray_test.h"
+#include "tests/stages/shading_points.h"
 
 #include <numbers>
 
@@ -147,6 +148,62 @@ TEST_F(Gather, SeesALitCeilingUnderItsFormFactor)
     fmt::print("  mean difference {:+.5f}, standard deviation of independent rays {:.5f}\n", difference / 64,
                std::sqrt(variance) / 64);
     EXPECT_LE(std::abs(difference), 4 * std::sqrt(variance));
+}
+
+/// What pixels gather for themselves does not depend on how many there is room for at once; in even light it is radiosity.
+TEST_F(Gather, OfPixelsIsTheSameInOnePassAndInMany)
+{
+    constexpr uint32_t kWidth = 24, kHeight = 20, kPixels = kWidth * kHeight;
+    SceneBuilder builder;
+    builder.box(kLow, kHigh, builder.material(lambert(kAlbedo)), true);
+    const auto path = builder.compile();
+    const auto scene = load(path);
+    const Camera camera{.name = "",
+                        .position = {0, 0.7f, 1.4f},
+                        .forward = {0, 0, -1},
+                        .up = {0, 1, 0},
+                        .vertical_fov = 1.2f,
+                        .orthographic_height = 0};
+    const ShadingPoints points(device(), *scene, path, camera, kWidth, kHeight);
+    const auto map = mapOf(*scene, {});
+    const auto pixels = [&](uint32_t room, const std::vector<gpu::CutNode>& nodes)
+    {
+        const auto cut = cutOf(*scene, nodes);
+        const GatherStage stage(device(), *scene, 1, room);
+        EXPECT_EQ(stage.raysPerPixel(kPixels), 1u);
+        const Buffer radiance = upload("test.radiance", std::vector<gpu::vec3>(kPixels));
+        submit(*scene,
+               [&](Recorder& rec)
+               {
+                   stage.recordPixels(rec, map->rays, *map->gpu, *cut->gpu,
+                                      {.mode = CutMode::kRefined,
+                                       .ray_count = room,
+                                       .specular_depth = 8,
+                                       .photon_count = 50,
+                                       .radius = 5,
+                                       .seed = 1},
+                                      {.points = points.gpu->points,
+                                       .radiance = radiance,
+                                       .point_count = kPixels,
+                                       .frame = 3,
+                                       .seed = 7});
+               });
+        return contents<gpu::vec3>(radiance, kPixels);
+    };
+    const auto even = wallNodes([](Double3) { return gpu::vec3{3, 2, 1}; });
+    for (const gpu::vec3& pixel : pixels(kPixels / 7 + 1, even))
+        for (const auto& [got, irradiance] : {std::pair{pixel.x, 3.0}, {pixel.y, 2.0}, {pixel.z, 1.0}})
+            EXPECT_NEAR(got, kAlbedo * kAlbedo * irradiance / kPi, 1e-5);
+    const auto lit_above = wallNodes([](Double3 normal) { return normal.y < 0 ? gpu::vec3{1, 1, 1} : gpu::vec3{}; });
+    const auto once = pixels(kPixels, lit_above), often = pixels(kPixels / 7 + 1, lit_above);
+    uint32_t lit = 0;
+    for (uint32_t i = 0; i < kPixels; ++i)
+    {
+        EXPECT_FLOAT_EQ(once[i].x, often[i].x) << i;
+        lit += once[i].x > 0;
+    }
+    EXPECT_GT(lit, kPixels / 10);
+    EXPECT_LT(lit, kPixels * 9 / 10);
 }
 
 /// Light from one side on a rough ceiling: what of it comes down is up to the BRDF.
