@@ -6,6 +6,7 @@
 #     --frames N         default 64
 #     --spp N            samples a pixel of the references; default 4096
 #     --size WxH         default 256x256; others do not compare with Cycles
+#     --preset NAME      of mode gi; default default
 #     --set NAME=VALUE   a setting of mode gi; repeatable
 # Time is that of recording and rendering frames, programs and kernels being ready. The reference's own noise is part of
 # every error. LUMICUT_BIN=FOLDER uses the programs there instead of building.
@@ -18,12 +19,13 @@ while (($#)); do
     case $1 in
     --help | -h) usage_of "${BASH_SOURCE[0]}" && exit ;;
     --quick) quick=1 ;;
-    --frames | --spp | --size | --set)
+    --frames | --spp | --size | --preset | --set)
         need_value "$1" $#
         case $1 in
         --frames) frames=$2 ;;
         --spp) spp=$2 ;;
         --size) size=$2 ;;
+        --preset) settings+=(--preset "$2") ;;
         --set) settings+=(--set "$2") ;;
         esac
         shift
