@@ -31,7 +31,7 @@ constexpr std::array kKnobs{
     Knob{"samples.iterations", &Settings::sample_iterations, 0, 16, "", "iterations of k-means"},
     Knob{"samples.alpha", &Settings::sample_alpha, 0.01, 1000, "per half of the scene's longest side", "weight of distance against normals"},
     Knob{"samples.reach", &Settings::sample_reach, 2, 10, "of its cluster's mean radius", "how far a sample speaks for"},
-    Knob{"gather.rays", &Settings::gather_rays, 1, 4096, "", 
+    Knob{"gather.rays", &Settings::gather_rays, 1, 4096, "",
          "rays an irradiance sample gathers with; times samples.count, also those of a standing picture's pixels"},
     Knob{"glossy.mode", &Settings::glossy_mode, 0, 1, "", "rough reflections of a picture's first frame", "rays,sh"},
     Knob{"caustics.photons", &Settings::caustic_photons, 256, 4e6, "", "photon paths aimed at specular objects a frame"},

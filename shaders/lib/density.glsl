@@ -10,7 +10,7 @@
 
 const uint kDensityBins = 32u;
 const uint kDensityRefinements = 3u; // histograms, each within one bin of the one before
-const uint kDensityThrong = 4096u;
+const uint kDensityThrong = 4096u; // photons looked at, from which on a full bin is not counted to its end
 
 /// Squared distance of a photon to x, longer off the surface than along it; kInfinity where it lights another surface.
 float photonDistance2(Photon photon, vec3 x, vec3 n)

@@ -24,7 +24,7 @@ protected:
         Settings settings = smallSettings();
         settings.photon_count = 10000; // fewer make wider density estimates, which lose more light at the room's edges
         settings.photon_bounces = bounces;
-        settings.sample_count = 512; // as many rays as 16 a pixel
+        settings.sample_count = 512; // as many rays as 17 a pixel
         settings.gather_rays = 64;
         SceneBuilder builder;
         const nlohmann::json glowing =
