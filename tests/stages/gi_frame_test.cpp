@@ -89,7 +89,8 @@ bool equalBits(const Picture& a, const Picture& b)
 TEST_F(GiFrame, GivesTheSameBitsForTheSameSeedAndOthersForAnother)
 {
     SceneBuilder builder;
-    builder.light({{"type", "directional"}, {"intensity", 1}}, {{"rotation", {-0.5, 0.1, 0.1, 0.8}}}); // photons are guided
+    for (int i = 0; i < 16; ++i) // so many that photons are guided
+        builder.light({{"type", "point"}, {"intensity", 0.1}}, {{"translation", {0.1 * i - 0.8, 1.5, 0.4}}});
     const auto scene = load(room(builder));
     Settings settings = smallSettings();
     settings.gather_rays = 256; // 17 a pixel: the last frames gather at every pixel
