@@ -3,6 +3,7 @@
 #include "shaders/lib/terms.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 namespace
@@ -91,6 +92,8 @@ GlobalIllumination::GlobalIllumination(const Device& device, const SceneGpu& sce
     longest_side_ = std::max({x, y, z, 1e-20f});
     if (GuideStage::helps(scene))
         guide_.emplace(device, scene, settings.photon_count);
+    if (settings.denoise_passes > 0)
+        denoise_.emplace(device, scene, width * height);
 }
 
 const Buffer& GlobalIllumination::record(Recorder& rec, const RayStage& rays, const gpu::CameraParams& camera,
@@ -141,16 +144,54 @@ uint32_t GlobalIllumination::chainDepth(const Settings& settings) const
     return has_mirrors_ ? settings.specular_depth : std::min(settings.specular_depth, 2u);
 }
 
+/// A standing picture needs the filter less with every frame: for four times the samples one pass less, until none is left
+/// and the picture is on its way to what it should be.
+uint32_t GlobalIllumination::denoisePasses(const Frame& frame) const
+{
+    const uint32_t fewer = uint32_t(std::bit_width(frame.index + 1)) / 2;
+    return denoise_ && frame.settings.view == gpu::kViewNone && frame.settings.denoise_passes > fewer
+               ? frame.settings.denoise_passes - fewer
+               : 0;
+}
+
+const Buffer& GlobalIllumination::noisyLight(const Frame& frame) const
+{
+    if (denoisePasses(frame) == 0)
+        return frame.radiance;
+    denoise_->clear(frame.rec);
+    return denoise_->light();
+}
+
+/// @param glossy whether the light is that of specular lobes alone
+void GlobalIllumination::recordDenoise(const Frame& frame, bool glossy) const
+{
+    const gpu::vec3 right = frame.camera.right;
+    const float image_width = 2 * std::hypot(right.x, right.y, right.z);
+    if (const uint32_t passes = denoisePasses(frame))
+        denoise_->record(frame.rec, {.points = frame.points,
+                                     .radiance = frame.radiance,
+                                     .width = width_,
+                                     .height = height_,
+                                     .passes = passes,
+                                     .pixel_angle = frame.camera.orthographic ? 0 : image_width / float(width_),
+                                     .glossy = glossy,
+                                     .shares = glossy_.shares(),
+                                     .shared = glossy && reflectsByHarmonics(frame)});
+}
+
 void GlobalIllumination::recordDirect(const Frame& frame) const
 {
     direct_.record(frame.rec, frame.rays,
                    {.points = frame.points,
                     .radiance = frame.radiance,
+                    .noisy = direct_.isNoisy() ? noisyLight(frame) : frame.radiance,
                     .point_count = frame.pixel_count,
                     .light_sample_count = frame.settings.direct_samples,
                     .candidate_count = frame.settings.direct_candidates,
                     .first_sample = frame.index,
                     .seed = frame.camera.seed});
+    if (direct_.isNoisy())
+        recordDenoise(frame, false);
 }
 
 PhotonStage::Input GlobalIllumination::photonInput(const Frame& frame) const
@@ -299,6 +340,7 @@ void GlobalIllumination::recordIndirect(const Frame& frame, const InterpolateSta
                         {.diffuse_points = frame.diffuse_points,
                          .radiance = frame.radiance,
                          .point_count = frame.pixel_count,
+                         .width = width_,
                          .alpha = frame.settings.sample_alpha * 2 / longest_side_,
                          .radius = kSearchRadius * diagonal_,
                          .white = frame.settings.view == gpu::kViewIrradiance});
@@ -340,7 +382,9 @@ void GlobalIllumination::recordGlossy(const Frame& frame, const CutStage::Output
     const auto scope = frame.rec.scope("glossy");
     const GlossyStage::Input in{.points = frame.points,
                                 .radiance = frame.radiance,
+                                .noisy = noisyLight(frame),
                                 .point_count = frame.pixel_count,
+                                .width = width_,
                                 .first_sample = frame.index,
                                 .specular_depth = chainDepth(frame.settings),
                                 .seed = frame.camera.seed,
@@ -349,6 +393,7 @@ void GlobalIllumination::recordGlossy(const Frame& frame, const CutStage::Output
     if (in.shared)
         glossy_.recordHarmonics(frame.rec, *samples, gather_.harmonics(), in);
     glossy_.record(frame.rec, frame.rays, cut, in);
+    recordDenoise(frame, true);
 }
 
 void GlobalIllumination::recordCaustics(const Frame& frame)

@@ -3,6 +3,7 @@
 #pragma once
 #include "runtime/settings.h"
 #include "runtime/stages/caustics.h"
+#include "runtime/stages/denoise.h"
 #include "runtime/stages/direct.h"
 #include "runtime/stages/gather.h"
 #include "runtime/stages/glossy.h"
@@ -38,6 +39,10 @@ public:
 private:
     struct Frame;
     uint32_t chainDepth(const Settings& settings) const;
+    uint32_t denoisePasses(const Frame& frame) const;
+    /// Where a term's noisy light goes, from here to recordDenoise().
+    const Buffer& noisyLight(const Frame& frame) const;
+    void recordDenoise(const Frame& frame, bool glossy) const;
     void recordDirect(const Frame& frame) const;
     PhotonStage::Input photonInput(const Frame& frame) const;
     PhotonStage::Output emitPhotons(const Frame& frame);
@@ -80,6 +85,7 @@ private:
     InterpolateStage interpolate_;
     GlossyStage glossy_;
     CausticsStage caustics_;
+    std::optional<DenoiseStage> denoise_; // where it is asked for
     ViewsStage views_;
     gpu::vec3 map_camera_{};                            // where the camera was when the global map was made
     std::optional<MapOrigin> global_map_, caustic_map_; // that lie in the stages' buffers

@@ -4,22 +4,30 @@
 
 #include <numeric>
 
+namespace
+{
+LightKind kindOf(const LightShare& light)
+{
+    return !light.isBeam() ? LightKind::kLamp : light.isPunctual() ? LightKind::kSun : LightKind::kSky;
+}
+} // namespace
+
 LightGroups groupLights(std::span<const LightShare> lights)
 {
     LightGroups result;
-    for (const bool beams : {true, false})
+    for (const LightKind kind : {LightKind::kSun, LightKind::kSky, LightKind::kLamp})
     {
         std::vector<uint32_t> members;
         std::vector<double> weights;
         for (uint32_t i = 0; i < lights.size(); ++i)
-            if (lights[i].isBeam() == beams && lights[i].pmf > 0)
+            if (kindOf(lights[i]) == kind && lights[i].pmf > 0)
             {
                 members.push_back(i);
                 weights.push_back(lights[i].pmf);
             }
         if (members.empty())
             continue;
-        result.groups.push_back({.beams = beams,
+        result.groups.push_back({.kind = kind,
                                  .first_pick = uint32_t(result.picks.size()),
                                  .pick_count = uint32_t(members.size()),
                                  .share = float(std::accumulate(weights.begin(), weights.end(), 0.0)),

@@ -1,13 +1,20 @@
-// Lights parted into beams and lamps, each with a table to pick from: direct light asks both.
+// Lights parted into suns, skies and lamps, each with a table to pick from: direct light asks them all.
 #pragma once
 #include "runtime/scene_gpu.h"
 #include "shaders/direct/direct.h"
 
 #include <vector>
 
+enum class LightKind
+{
+    kSun,  // directional
+    kSky,  // an environment: like a sun's, its power says nothing of how much of it is seen
+    kLamp,
+};
+
 struct LightGroup
 {
-    bool beams;          // directional lights and environments; else lamps
+    LightKind kind;
     uint32_t first_pick; // its part of LightGroups::picks
     uint32_t pick_count; // lights
     float share;         // of all lights' pmf, > 0
@@ -16,7 +23,7 @@ struct LightGroup
 
 struct LightGroups
 {
-    std::vector<LightGroup> groups; // that have a light: none to two
+    std::vector<LightGroup> groups; // that have a light: none to three
     std::vector<gpu::LightPick> picks;
 };
 

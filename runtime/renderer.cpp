@@ -78,6 +78,7 @@ void Renderer::record(Recorder& rec, const Camera& camera, const Settings& setti
     direct_->record(rec, rays_,
                     {.points = primary.points,
                      .radiance = primary.radiance,
+                     .noisy = primary.radiance,
                      .point_count = pixel_count,
                      .light_sample_count = settings.direct_samples,
                      .candidate_count = settings.direct_candidates,

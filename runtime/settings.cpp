@@ -16,7 +16,7 @@ namespace
 {
 constexpr std::array kKnobs{
     Knob{"specular_depth", &Settings::specular_depth, 0, 64, "", "mirror and glass events followed from the eye"},
-    Knob{"direct_samples", &Settings::direct_samples, 1, 64, "", "shadow rays a pixel and frame, to beams and lamps each"},
+    Knob{"direct_samples", &Settings::direct_samples, 1, 64, "", "shadow rays a pixel and frame, to suns, skies and lamps each"},
     Knob{"direct_candidates", &Settings::direct_candidates, 1, 64, "", "light samples of which one gets the shadow ray"},
     Knob{"photons.count", &Settings::photon_count, 256, 4e6, "", "photon paths emitted a frame"},
     Knob{"photons.bounces", &Settings::photon_bounces, 1, 64, "", "photons a path may leave at surfaces that scatter"},
@@ -37,6 +37,7 @@ constexpr std::array kKnobs{
     Knob{"caustics.photons", &Settings::caustic_photons, 256, 4e6, "", "photon paths aimed at specular objects a frame"},
     Knob{"caustics.nearest", &Settings::caustic_density_photons, 8, 1024, "", "photons of a caustic's density estimate"},
     Knob{"caustics.radius", &Settings::caustic_radius, 1e-4, 1, "of the scene's diagonal", "how far that estimate may reach"},
+    Knob{"denoise.passes", &Settings::denoise_passes, 0, 5, "", "passes of the filter over the first frames' noise, each three times as wide as the last"},
     Knob{"reuse.photons", &Settings::reuse_photons, 0, 1, "", "whether photons and cut are kept while only the camera moves", "off,on"},
     Knob{"reuse.samples", &Settings::reuse_samples, 0, 1, "", "whether irradiance samples are kept while only the camera moves", "off,on"},
     Knob{"reference_depth", &Settings::reference_depth, 1, 1024, "", "most vertices of a path of the reference"},
@@ -95,9 +96,9 @@ Result<Settings> presetSettings(std::string_view name)
         settings.cut_probes = 8;
         settings.cut_iterations = 1;
         settings.sample_count = 384;
-        settings.sample_iterations = 1;
         settings.sample_reach = 3.5f;
         settings.gather_rays = 32;
+        settings.denoise_passes = 2;
         settings.caustic_photons = 4000;
         settings.caustic_density_photons = 24;
     }

@@ -29,7 +29,7 @@ struct Settings
     float cut_difference = 0.2f;
     uint32_t samples_mode = 2; // SamplesMode
     uint32_t sample_count = 4096;
-    uint32_t sample_iterations = 2;
+    uint32_t sample_iterations = 1;
     float sample_alpha = 10;
     float sample_reach = 4;
     uint32_t gather_rays = 256;
@@ -37,6 +37,7 @@ struct Settings
     uint32_t caustic_photons = 100000; // paths
     uint32_t caustic_density_photons = 200;
     float caustic_radius = 0.01f; // of the scene's diagonal
+    uint32_t denoise_passes = 3;
     uint32_t reuse_photons = 1; // 0 or 1
     uint32_t reuse_samples = 0; // 0 or 1
     uint32_t reference_depth = 64;

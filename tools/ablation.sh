@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # What each part of mode gi is worth: error of the first frame and GPU milliseconds side by side, one setting changed at a
-# time; then the illumination cut's lookups against full kNN.
+# time; then the illumination cut's lookups against full kNN: with these settings, and like against like, with the photons of
+# the method (100 an estimate) and without the light that the cut finds missing at edges and kNN does not (cut.probes=0).
 #   tools/ablation.sh [OPTION...] [OUTDIR]    OUTDIR: packages and references; default build/truth
 #     --quick            small pictures, references of 256 samples, small counts
 #     --scene NAME       cornell, caustics, atrium, hall or sponza; default atrium
@@ -45,7 +46,8 @@ build_programs
 rows=("")
 rows+=(cut.mode={knn,nearest,leaves,refined})
 rows+=(samples.mode={uniform,seeded,seeded+kmeans})
-rows+=(samples.iterations={0,3})
+rows+=(samples.iterations={0,2,3})
+rows+=(denoise.passes=0)
 if ((quick)); then
     common=(--set photons.count=20000 --set caustics.photons=20000 --set samples.count=1024 --set gather.rays=64 "${common[@]}")
     rows+=(samples.count={256,1024} gather.rays={16,64})
@@ -89,4 +91,8 @@ done
 
 echo
 "$bin/lumicut-bench" lookup "$package" --size "$size" --repeats "$seeds" ${common[@]+"${common[@]}"}
+echo
+echo "photons.nearest=100 cut.probes=0"
+"$bin/lumicut-bench" lookup "$package" --size "$size" --repeats "$seeds" ${common[@]+"${common[@]}"} \
+    --set photons.nearest=100 --set cut.probes=0
 echo "goals: refined <= 2 % mean error, >= 10 x faster than knn"

@@ -62,5 +62,6 @@ for view in normals budget samples clusters photons tree cut; do
 done
 gi irradiance --view irradiance --frames "$frames"
 gi caustics --set term=caustics --set exposure=4 --frames "$frames"
+gi first --frames 1
 gi final --frames "$frames"
 picture reference --mode reference --spp "$spp"

@@ -1,8 +1,10 @@
 #include "runtime/stages/direct.h"
 
+#include <algorithm>
+
 namespace
 {
-constexpr uint32_t kLampSeed = 0x9e3779b9; // lamps are sampled independently of beams
+constexpr uint32_t kGroupSeed = 0x9e3779b9; // times the kind: groups are sampled independently of each other
 }
 
 DirectStage::DirectStage(const Device& device, const SceneGpu& scene, uint32_t max_pixels)
@@ -13,7 +15,8 @@ DirectStage::DirectStage(const Device& device, const SceneGpu& scene, uint32_t m
       shadow_rays_(device.array<gpu::ShadowRay>("direct.shadow_rays", max_pixels)),
       emitter_rays_(device.array<gpu::EmitterRay>("direct.emitter_rays", max_pixels)),
       hits_(device.texelArray<gpu::Hit>("direct.hits", max_pixels)),
-      picks_(device.upload<gpu::LightPick>("direct.picks", lights_.picks)), has_area_lights_(scene.hasAreaLights())
+      picks_(device.upload<gpu::LightPick>("direct.picks", lights_.picks)), has_area_lights_(scene.hasAreaLights()),
+      is_noisy_(has_area_lights_ || !std::ranges::all_of(lights_.groups, &LightGroup::one_place))
 {
 }
 
@@ -33,13 +36,14 @@ void DirectStage::recordSample(Recorder& rec, const RayStage& rays, const Input&
     {
         const bool last = &group == &lights_.groups.back();
         const uint32_t candidates = group.one_place ? 1 : in.candidate_count;
-        (group.beams ? emitted.beam_density : emitted.lamp_density) = 1 / group.share;
+        if (group.kind != LightKind::kSun)
+            (group.kind == LightKind::kSky ? emitted.sky_density : emitted.lamp_density) = 1 / group.share;
         const gpu::DirectParams params{.point_count = in.point_count,
                                        .first_sample = in.first_sample,
                                        .seed = in.seed,
                                        .light_sample = light_sample,
                                        .light_sample_count = in.light_sample_count,
-                                       .light_seed = in.seed + (group.beams ? 0u : kLampSeed),
+                                       .light_seed = in.seed + uint32_t(group.kind) * kGroupSeed,
                                        .first_pick = group.first_pick,
                                        .pick_count = group.pick_count,
                                        .share = group.share,
@@ -55,7 +59,7 @@ void DirectStage::recordSample(Recorder& rec, const RayStage& rays, const Input&
                  {"EmitterRays", emitter_rays_},
                  {"Picks", picks_}});
         rays.close(rec, shadow_size_);
-        rays.visible(rec, shadow_size_, shadow_rays_, in.radiance);
+        rays.visible(rec, shadow_size_, shadow_rays_, group.one_place ? in.radiance : in.noisy);
     }
     if (!has_area_lights_)
         return;
@@ -66,5 +70,5 @@ void DirectStage::recordSample(Recorder& rec, const RayStage& rays, const Input&
                      {"Rays", emitter_queue_.rays},
                      {"Hits", hits_},
                      {"EmitterRays", emitter_rays_},
-                     {"Radiance", in.radiance}});
+                     {"Radiance", in.noisy}});
 }

@@ -18,6 +18,7 @@ GlossyStage::GlossyStage(const Device& device, const SceneGpu& scene, uint32_t m
 void GlossyStage::record(Recorder& rec, const RayStage& rays, const CutStage::Output& cut, const Input& in) const
 {
     gpu::GlossyParams params{.point_count = in.point_count,
+                             .width = in.width,
                              .first_sample = in.first_sample,
                              .seed = in.seed,
                              .depth = 0,
@@ -45,7 +46,7 @@ void GlossyStage::record(Recorder& rec, const RayStage& rays, const CutStage::Ou
                          {"States", states_},
                          {"NextQueue", next->size},
                          {"NextRays", next->rays},
-                         {"Radiance", in.radiance},
+                         {"Radiance", in.noisy},
                          {"CutSize", cut.size},
                          {"TreeNodes", cut.tree.nodes()},
                          {"CutNodes", cut.nodes},
@@ -58,7 +59,7 @@ void GlossyStage::record(Recorder& rec, const RayStage& rays, const CutStage::Ou
 void GlossyStage::recordHarmonics(Recorder& rec, const InterpolateStage::Sorted& samples, const Buffer& harmonics,
                                   const Input& in) const
 {
-    rec.run(harmonics_, in.point_count, gpu::GlossyParams{.point_count = in.point_count},
+    rec.run(harmonics_, in.point_count, gpu::GlossyParams{.point_count = in.point_count, .width = in.width},
             {{"Size", samples.size},
              {"TreeNodes", samples.tree.nodes()},
              {"Samples", samples.samples},

@@ -14,8 +14,10 @@ public:
     struct Input
     {
         const Buffer& points;   // gpu::ShadingPoint[point_count]
-        const Buffer& radiance; // vec3[point_count], grows by the glossy light
+        const Buffer& radiance; // vec3[point_count], grows by the glossy light from harmonics
+        const Buffer& noisy;    // likewise, by that from rays; may be `radiance`
         uint32_t point_count;
+        uint32_t width; // of the picture, pixels
         uint32_t first_sample;
         uint32_t specular_depth; // most delta events of a ray
         uint32_t seed;

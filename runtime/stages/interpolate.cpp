@@ -27,7 +27,7 @@ void InterpolateStage::record(Recorder& rec, const Sorted& sorted, const Input& 
 {
     rec.clear(statistics_);
     const gpu::InterpolateParams params{
-        .point_count = in.point_count, .alpha = in.alpha, .radius = in.radius, .white = in.white};
+        .point_count = in.point_count, .width = in.width, .alpha = in.alpha, .radius = in.radius, .white = in.white};
     rec.run(apply_, (in.point_count + run_ - 1) / run_, params,
             {{"Size", sorted.size},
              {"TreeNodes", sorted.tree.nodes()},

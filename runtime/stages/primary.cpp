@@ -1,5 +1,7 @@
 #include "runtime/stages/primary.h"
 
+#include <cmath>
+
 PrimaryStage::PrimaryStage(const Device& device, const SceneGpu& scene, uint32_t max_pixels)
     : has_specular_(scene.hasFeature(gpu::kFeatureSpecular)),
       generate_(device.kernel("primary/generate")),
@@ -13,6 +15,11 @@ PrimaryStage::PrimaryStage(const Device& device, const SceneGpu& scene, uint32_t
 {
 }
 
+namespace
+{
+float lengthOf(gpu::vec3 v) { return std::hypot(v.x, v.y, v.z); }
+} // namespace
+
 PrimaryStage::Output PrimaryStage::record(Recorder& rec, const RayStage& rays, const Input& in) const
 {
     const auto scope = rec.scope("primary");
@@ -22,6 +29,8 @@ PrimaryStage::Output PrimaryStage::record(Recorder& rec, const RayStage& rays, c
 
     const RayQueue* queue = &queue_;
     const RayQueue* next = &next_queue_;
+    // The frames of a standing picture share out its pixels: each shows its own part, so that textures come out sharp.
+    const float pixel_width = 2 * kTextureBlur * lengthOf(in.camera.right) / float(in.camera.width) / float(in.camera.first_sample + 1);
     const uint32_t depth_limit = has_specular_ ? in.specular_depth : 0;
     for (uint32_t depth = 0; depth <= depth_limit; ++depth)
     {
@@ -29,7 +38,9 @@ PrimaryStage::Output PrimaryStage::record(Recorder& rec, const RayStage& rays, c
                                       .depth_limit = depth_limit,
                                       .pixel_count = pixel_count,
                                       .first_sample = in.camera.first_sample,
-                                      .seed = in.camera.seed};
+                                      .seed = in.camera.seed,
+                                      .width = in.camera.orthographic ? pixel_width : 0,
+                                      .spread = in.camera.orthographic ? 0 : pixel_width};
         rays.closest(rec, *queue, hits_, traceSeed(in.camera.seed, in.camera.first_sample, depth));
         rays.reset(rec, next->size);
         rec.runIndirect(chain_, queue->size, 0, params,

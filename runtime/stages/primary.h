@@ -6,6 +6,9 @@
 class PrimaryStage
 {
 public:
+    /// Of a pixel: what textures are blurred over, a little less than one sample a pixel can show.
+    static constexpr float kTextureBlur = 0.7f;
+
     PrimaryStage(const Device& device, const SceneGpu& scene, uint32_t max_pixels);
 
     struct Input

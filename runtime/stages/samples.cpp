@@ -168,7 +168,6 @@ void SamplesStage::recordSeeds(Recorder& rec, const RayStage& rays, const Input&
 
 void SamplesStage::assign(Recorder& rec, const gpu::ClusterParams& params, const Buffer& points) const
 {
-    tree_.record(rec, cluster_spheres_, cluster_size_);
     rec.run(assign_, point_count_, params,
             {{"Size", cluster_size_},
              {"Points", points},
@@ -184,16 +183,17 @@ void SamplesStage::assign(Recorder& rec, const gpu::ClusterParams& params, const
 void SamplesStage::recordClusters(Recorder& rec, const Input& in, const gpu::ClusterParams& params,
                                   const Buffer& points) const
 {
+    tree_.record(rec, cluster_spheres_, cluster_size_);
     for (uint32_t i = 0; in.mode == SamplesMode::kKmeans && i < in.iterations; ++i)
     {
         assign(rec, params, points);
         rec.runIndirect(
             update_, cluster_size_, 0, params,
             {{"Size", cluster_size_}, {"Sums", sums_}, {"Clusters", clusters_}, {"Spheres", cluster_spheres_}});
+        tree_.refit(rec, cluster_spheres_, cluster_size_);
     }
     if (in.age == 0)
         return assign(rec, params, points);
-    tree_.record(rec, cluster_spheres_, cluster_size_);
     rec.run(adopt_, point_count_, params,
             {{"Size", cluster_size_},
              {"Points", points_},

@@ -18,11 +18,16 @@ Tree::Tree(const Device& device, std::string_view name, uint32_t max_count)
 
 void Tree::record(Recorder& rec, const Buffer& spheres, const Buffer& size) const
 {
-    rec.clear(arrivals_);
     rec.runIndirect(keys_kernel_, size, 0, NoParams{}, {{"Size", size}, {"Spheres", spheres}, {"Keys", keys_}, {"Order", order_}});
     sort_.record(rec, keys_, order_, size, gpu::kTreeKeyBits);
     rec.runIndirect(hierarchy_, size, 0, NoParams{},
                     {{"Size", size}, {"Keys", keys_}, {"Nodes", nodes_}, {"LeafParents", leaf_parents_}, {"NodeParents", node_parents_}});
+    refit(rec, spheres, size);
+}
+
+void Tree::refit(Recorder& rec, const Buffer& spheres, const Buffer& size) const
+{
+    rec.clear(arrivals_);
     rec.runIndirect(bounds_, size, 0, NoParams{},
                     {{"Size", size}, {"Spheres", spheres}, {"Order", order_}, {"LeafParents", leaf_parents_},
                      {"NodeParents", node_parents_}, {"Nodes", nodes_}, {"Arrivals", arrivals_}});

@@ -20,6 +20,8 @@ public:
     /// @param spheres vec4[max_count]: centre and radius, metres; points have radius 0
     /// @param size gpu::QueueSize, ready for dispatch
     void record(Recorder& rec, const Buffer& spheres, const Buffer& size) const;
+    /// The same tree after the spheres have moved a little: it holds them all, if no longer in the order of their keys.
+    void refit(Recorder& rec, const Buffer& spheres, const Buffer& size) const;
 
     const Buffer& nodes() const { return nodes_; }             // gpu::TreeNode[count - 1]
     const Buffer& order() const { return order_; }             // uint[count]: which sphere is the i-th of the sorted ones

@@ -3,6 +3,7 @@
 #extension GL_EXT_scalar_block_layout : require
 #include "shaders/caustics/caustics.h"
 #include "shaders/lib/bsdf.glsl"
+#include "shaders/lib/shading_point.glsl"
 
 // Caustics at every pixel: density estimation among the caustic photons around its shading point. One thread per pixel.
 
@@ -22,7 +23,7 @@ void main()
     if (pixel >= params.point_count || points[pixel].slot == kNone)
         return;
     ShadingPoint point = points[pixel];
-    Surface s = surfaceAt(point.slot, point.barycentrics, point.direction);
+    Surface s = surfaceAt(point);
     Bsdf b = bsdfAt(materialAt(s), s.front);
     vec3 reflectance = point.throughput * diffuseReflectance(b, max(0.0, -dot(s.normal, point.direction)));
     if (reflectance == vec3(0.0))

@@ -5,7 +5,8 @@
 
 GPU_NAMESPACE_BEGIN
 
-// Lights come in two groups: a sun's power is of another kind than a lamp's, and where both shine each gets its own shadow ray.
+// Lights come in three groups, suns, skies and lamps: their powers do not compare, and a sun that is in the shade must not
+// take the shadow ray of the sky. Each group gets its own.
 struct LightPick // Walker's alias method within a group
 {
     uint light;      // taken where a second uniform number < threshold
@@ -33,7 +34,7 @@ GPU_SIZE(DirectParams, 44);
 struct EmittedParams
 {
     uint seed;
-    float beam_density; // with which one candidate finds a direction, over the density of all lights together
+    float sky_density; // with which one candidate finds a direction, over the density of all lights together
     float lamp_density;
 };
 GPU_SIZE(EmittedParams, 12);

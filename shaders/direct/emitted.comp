@@ -26,7 +26,7 @@ vec3 emittedLight(Hit hit, vec3 direction, float pdf)
     if (hit.slot == kNone)
     {
         vec3 light = environmentRadiance(direction);
-        return light == vec3(0.0) ? light : light * misWeight(pdf, params.beam_density * environmentPdf(direction));
+        return light == vec3(0.0) ? light : light * misWeight(pdf, params.sky_density * environmentPdf(direction));
     }
     uint light = loadTriangle(loadBvhTriangle(hit.slot).triangle).light;
     if (light == kNone)
@@ -35,7 +35,7 @@ vec3 emittedLight(Hit hit, vec3 direction, float pdf)
     if (!emits(s))
         return vec3(0.0);
     float light_pdf = params.lamp_density * trianglePdf(light, s.area, hit.t, abs(dot(s.geometric_normal, direction)));
-    return surfaceEmission(s.material, s.uv0, s.uv1) * misWeight(pdf, light_pdf);
+    return surfaceEmission(s.material, s.uv0, s.uv1, s.footprints) * misWeight(pdf, light_pdf);
 }
 
 void main()

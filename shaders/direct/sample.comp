@@ -51,7 +51,7 @@ void main()
     if (path >= params.point_count || points[path].slot == kNone)
         return;
     ShadingPoint point = points[path];
-    Surface s = surfaceAt(point.slot, point.barycentrics, point.direction);
+    Surface s = surfaceAt(point);
     Bsdf b = bsdfAt(materialAt(s), s.front);
     if (!hasDensity(b))
         return;

@@ -26,7 +26,7 @@ void main()
         return;
     uint new_sample = i / params.ray_count, sample_ = kept_size.count + new_sample;
     vec3 normal = unpackNormal(samples[sample_].normal);
-    vec3 direction = gatherDirection(normal, new_sample, i - new_sample * params.ray_count, params.seed);
+    vec3 direction = gatherDirection(normal, new_sample, i - new_sample * params.ray_count, params.ray_count, params.seed);
     rays[i] = Ray(offsetOrigin(samples[sample_].position, normal), kInfinity, direction, i);
     states[i] = GatherState(vec3(1.0), kNone, 0u);
 }

@@ -24,7 +24,7 @@ void main()
     ShadingPoint point = points[pixel];
     if (point.slot == kNone)
         return;
-    Surface s = surfaceAt(point.slot, point.barycentrics, point.direction);
+    Surface s = surfaceAt(point);
     Bsdf b = bsdfAt(materialAt(s), s.front);
     mat3 frame = frameAround(s.normal);
     vec3 wo = -point.direction * frame;

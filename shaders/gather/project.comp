@@ -30,7 +30,7 @@ void main()
     for (uint first = 0u; first < params.ray_count; first += kRaysGroupSize)
     {
         uint ray = first + t;
-        vec4 b[4] = harmonicBasis(gatherDirection(normal, new_sample, ray, params.seed));
+        vec4 b[4] = harmonicBasis(gatherDirection(normal, new_sample, ray, params.ray_count, params.seed));
         b[3].w = 1.0;
         vec3 radiance = exists && ray < params.ray_count ? gathered[new_sample * params.ray_count + ray].radiance : vec3(0.0);
         for (uint k = 0u; k < kHarmonicsCount; ++k)

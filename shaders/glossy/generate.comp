@@ -25,7 +25,7 @@ void main()
     if (missing <= 0.0)
         return;
     ShadingPoint point = points[path];
-    Surface s = surfaceAt(point.slot, point.barycentrics, point.direction);
+    Surface s = surfaceAt(point);
     Bsdf b = bsdfAt(materialAt(s), s.front);
     if (b.smooth_specular)
         return;

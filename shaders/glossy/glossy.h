@@ -8,6 +8,7 @@ GPU_NAMESPACE_BEGIN
 struct GlossyParams
 {
     uint point_count;
+    uint width;        // of the picture, pixels
     uint first_sample; // index of the pixel's sample
     uint seed;
     uint depth;        // delta events before this one
@@ -15,7 +16,7 @@ struct GlossyParams
     uint shared_; // 1: Shares says which part of the light is there already
     float sure_reflectance; // from here on every pixel sends its ray
 };
-GPU_SIZE(GlossyParams, 28);
+GPU_SIZE(GlossyParams, 32);
 
 GPU_NAMESPACE_END
 #endif

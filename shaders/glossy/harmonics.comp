@@ -3,6 +3,8 @@
 #extension GL_EXT_scalar_block_layout : require
 #include "shaders/glossy/glossy.h"
 #include "shaders/lib/harmonics.glsl"
+#include "shaders/lib/shading_point.glsl"
+#include "shaders/lib/tile.glsl"
 
 // What rough lobes reflect of the light around a shading point, from the spherical harmonics of the irradiance samples whose
 // support holds it, with the weights of interpolation. One thread per pixel.
@@ -75,12 +77,12 @@ bool interpolatedLight(vec3 x, vec3 n, Reflection r, out vec3 light)
 
 void main()
 {
-    uint pixel = gl_GlobalInvocationID.x;
+    uint pixel = tiledPixel(gl_GlobalInvocationID.x, params.width, params.point_count);
     if (pixel >= params.point_count || points[pixel].slot == kNone)
         return;
     shares[pixel] = 0.0;
     ShadingPoint point = points[pixel];
-    Surface s = surfaceAt(point.slot, point.barycentrics, point.direction);
+    Surface s = surfaceAt(point);
     Bsdf b = bsdfAt(materialAt(s), s.front);
     float share = harmonicShare(b);
     if (share == 0.0)

@@ -4,6 +4,7 @@
 #extension GL_EXT_scalar_block_layout : require
 #include "shaders/interpolate/interpolate.h"
 #include "shaders/lib/math.glsl"
+#include "shaders/lib/tile.glsl"
 #include "shaders/lib/variation.glsl"
 
 // Indirect diffuse light of every pixel from the samples whose support holds its shading point. One thread per run of
@@ -91,6 +92,8 @@ void takeNearest(vec3 low, vec3 high)
 void main()
 {
     uint pixel = gl_GlobalInvocationID.x * kRun;
+    if (kRun == 1u)
+        pixel = tiledPixel(pixel, params.width, params.point_count);
     vec3 low, high;
     if (pixel >= params.point_count || !loadRun(pixel, low, high))
         return;

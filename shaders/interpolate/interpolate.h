@@ -19,11 +19,12 @@ GPU_SIZE(SampleTexels, 48);
 struct InterpolateParams
 {
     uint point_count;
+    uint width;   // of the picture, pixels
     float alpha;  // of Eq. 2, per metre, where no sample is accepted
     float radius; // metres: how far a sample may be there
     uint white;   // 1: as if every surface reflected all of it
 };
-GPU_SIZE(InterpolateParams, 16);
+GPU_SIZE(InterpolateParams, 20);
 
 struct InterpolateStatistics
 {

@@ -4,8 +4,7 @@
 #include "shaders/lib/bsdf.glsl"
 #include "shaders/lib/lights.glsl"
 #include "shaders/lib/random.glsl"
-#include "shaders/lib/surface.glsl"
-#include "shaders/primary/primary.h"
+#include "shaders/lib/shading_point.glsl"
 
 /// The sampler of a path at its vertex number `depth`.
 Sampler vertexSampler(uint path, uint depth, uint pixel_count, uint first_sample, uint seed)

@@ -39,12 +39,17 @@ uint pascalMod2(uint x)
 }
 
 /// Point `index` of a scrambled (0,2)-sequence in units of 2^-32; `seed` names the pixel and the dimension pair.
+uvec2 orderedSobolPair(uint index, uint seed)
+{
+    uint x = bitfieldReverse(permuteReversed(index, hash(seed ^ 0x68bc21ebu)));
+    uint y = bitfieldReverse(permuteReversed(pascalMod2(index), hash(seed ^ 0x02e5be93u)));
+    return uvec2(x, y);
+}
+
+/// The same with the points shuffled, so that sequences of other seeds go with it by chance.
 uvec2 sobolPair(uint index, uint seed)
 {
-    uint shuffled = bitfieldReverse(permuteReversed(bitfieldReverse(index), hash(seed)));
-    uint x = bitfieldReverse(permuteReversed(shuffled, hash(seed ^ 0x68bc21ebu)));
-    uint y = bitfieldReverse(permuteReversed(pascalMod2(shuffled), hash(seed ^ 0x02e5be93u)));
-    return uvec2(x, y);
+    return orderedSobolPair(bitfieldReverse(permuteReversed(bitfieldReverse(index), hash(seed))), seed);
 }
 
 /// A stream of well-distributed pairs for one path: dimension pair after dimension pair.

@@ -14,6 +14,7 @@ struct Surface
     bool front;            // the ray met the triangle's front
     float area;            // square metres, of the triangle
     vec2 uv0, uv1;
+    vec2 footprints;       // side of what is seen at once, in units of uv0 and uv1; 0: a point
     vec4 color;            // vertex colour
     uint material;
     uint triangle;
@@ -58,14 +59,20 @@ vec3 mappedNormal(vec3 normal, uvec3 v, vec3 weights, Surface s)
     if (dot(t, t) < 1e-12)
         return normal;
     t = normalize(t);
-    vec3 texel = sampleTexture(loadMaterial(s.material).normal_texture, s.uv0, s.uv1, 0.0).xyz * 2.0 - 1.0;
+    vec3 texel = sampleTexture(loadMaterial(s.material).normal_texture, s.uv0, s.uv1, s.footprints).xyz * 2.0 - 1.0;
     texel.xy *= loadMaterial(s.material).normal_scale;
     vec3 bent = texel.x * t + texel.y * tangent.w * cross(normal, t) + texel.z * normal;
     return dot(bent, bent) > 1e-12 ? normalize(bent) : normal;
 }
 
-/// The surface at BvhTriangle `slot`, met by a ray along `direction`.
-Surface surfaceAt(uint slot, vec2 barycentrics, vec3 direction)
+/// Surface coordinates a metre.
+float uvDensity(vec2 a, vec2 b, vec2 c, float area)
+{
+    return sqrt(0.5 * abs(determinant(mat2(b - a, c - a))) / max(area, 1e-30));
+}
+
+/// The surface at BvhTriangle `slot`, met along `direction` by a ray as wide as `width` metres.
+Surface surfaceAt(uint slot, vec2 barycentrics, vec3 direction, float width)
 {
     Surface s;
     vec3 weights = vec3(1.0 - barycentrics.x - barycentrics.y, barycentrics);
@@ -80,6 +87,15 @@ Surface surfaceAt(uint slot, vec2 barycentrics, vec3 direction)
     uvec3 v = loadTriangle(s.triangle).vertices;
     s.uv0 = interpolate(weights, loadVertex(v.x).uv0, loadVertex(v.y).uv0, loadVertex(v.z).uv0);
     s.uv1 = hasFeature(kFeatureSecondUv) ? interpolate(weights, loadVertex(v.x).uv1, loadVertex(v.y).uv1, loadVertex(v.z).uv1) : vec2(0.0);
+    s.footprints = vec2(0.0);
+    if (width > 0.0)
+    {
+        // As large as the ellipse that the ray's end makes.
+        float side = width * inversesqrt(max(abs(dot(s.geometric_normal, direction)), 0.01));
+        s.footprints.x = side * uvDensity(loadVertex(v.x).uv0, loadVertex(v.y).uv0, loadVertex(v.z).uv0, s.area);
+        if (hasFeature(kFeatureSecondUv))
+            s.footprints.y = side * uvDensity(loadVertex(v.x).uv1, loadVertex(v.y).uv1, loadVertex(v.z).uv1, s.area);
+    }
     s.color = hasFeature(kFeatureVertexColors) ? interpolate(weights, vertexColor(v.x), vertexColor(v.y), vertexColor(v.z)) : vec4(1.0);
     vec3 normal = interpolate(weights, unpackNormal(loadVertex(v.x).normal), unpackNormal(loadVertex(v.y).normal),
                               unpackNormal(loadVertex(v.z).normal));
@@ -102,12 +118,15 @@ Surface surfaceAt(uint slot, vec2 barycentrics, vec3 direction)
     return s;
 }
 
-vec3 surfaceEmission(uint material, vec2 uv0, vec2 uv1)
+/// As thin as a line.
+Surface surfaceAt(uint slot, vec2 barycentrics, vec3 direction) { return surfaceAt(slot, barycentrics, direction, 0.0); }
+
+vec3 surfaceEmission(uint material, vec2 uv0, vec2 uv1, vec2 footprints)
 {
     vec3 emission = loadMaterial(material).emission;
     uint ref = loadMaterial(material).emissive_texture;
     if (hasFeature(kFeatureEmissiveMaps) && ref != kNone && emission != vec3(0.0))
-        emission *= sampleTexture(ref, uv0, uv1, 0.0).rgb;
+        emission *= sampleTexture(ref, uv0, uv1, footprints).rgb;
     return emission;
 }
 
@@ -123,15 +142,15 @@ SurfaceMaterial materialAt(Surface s)
     m.specular = loadMaterial(s.material).specular;
     m.specular_color = loadMaterial(s.material).specular_color;
     m.ior = loadMaterial(s.material).ior;
-    m.emission = surfaceEmission(s.material, s.uv0, s.uv1);
+    m.emission = surfaceEmission(s.material, s.uv0, s.uv1, s.footprints);
 
     uint ref = loadMaterial(s.material).base_color_texture;
     if (hasFeature(kFeatureBaseColorMaps) && ref != kNone)
-        m.base_color *= sampleTexture(ref, s.uv0, s.uv1, 0.0).rgb;
+        m.base_color *= sampleTexture(ref, s.uv0, s.uv1, s.footprints).rgb;
     ref = loadMaterial(s.material).metallic_roughness_texture;
     if (hasFeature(kFeatureMetallicRoughnessMaps) && ref != kNone)
     {
-        vec4 texel = sampleTexture(ref, s.uv0, s.uv1, 0.0);
+        vec4 texel = sampleTexture(ref, s.uv0, s.uv1, s.footprints);
         m.roughness *= texel.g;
         m.metallic *= texel.b;
     }
@@ -139,13 +158,13 @@ SurfaceMaterial materialAt(Surface s)
         return m;
     ref = loadMaterial(s.material).transmission_texture;
     if (ref != kNone)
-        m.transmission *= sampleTexture(ref, s.uv0, s.uv1, 0.0).r;
+        m.transmission *= sampleTexture(ref, s.uv0, s.uv1, s.footprints).r;
     ref = loadMaterial(s.material).specular_texture;
     if (ref != kNone)
-        m.specular *= sampleTexture(ref, s.uv0, s.uv1, 0.0).a;
+        m.specular *= sampleTexture(ref, s.uv0, s.uv1, s.footprints).a;
     ref = loadMaterial(s.material).specular_color_texture;
     if (ref != kNone)
-        m.specular_color *= sampleTexture(ref, s.uv0, s.uv1, 0.0).rgb;
+        m.specular_color *= sampleTexture(ref, s.uv0, s.uv1, s.footprints).rgb;
     return m;
 }
 

@@ -43,11 +43,20 @@ float wrapCoordinate(float x, uint mode, float size)
     return mode == kWrapRepeat ? x : clamp(x, 0.5 / size, 1.0 - 0.5 / size);
 }
 
-/// One texture at the surface coordinates; `lod` in levels, 0 the finest.
-vec4 sampleTexture(uint ref_index, vec2 uv0, vec2 uv1, float lod)
+/// Mip level whose texels are as large as a square of side `footprint` in surface coordinates.
+float levelFor(TextureRef ref, float footprint)
+{
+    vec2 size = texturePageSize(ref.page);
+    float area = abs(ref.u_row.x * ref.v_row.y - ref.u_row.y * ref.v_row.x) * size.x * size.y;
+    return max(0.0, log2(footprint * sqrt(area)));
+}
+
+/// One texture around the surface coordinates. @param footprints how far around, in units of uv0 and uv1; 0: a point
+vec4 sampleTexture(uint ref_index, vec2 uv0, vec2 uv1, vec2 footprints)
 {
     TextureRef ref = texture_refs[ref_index];
     vec3 uv = vec3((ref.sampling & kSampleUv1) != 0u ? uv1 : uv0, 1.0);
+    float footprint = (ref.sampling & kSampleUv1) != 0u ? footprints.y : footprints.x;
     vec2 st = vec2(dot(ref.u_row, uv), dot(ref.v_row, uv));
     if (ref.sampling != kWrapRepeat && ref.sampling != kSampleUv1)
     {
@@ -56,7 +65,7 @@ vec4 sampleTexture(uint ref_index, vec2 uv0, vec2 uv1, float lod)
         if ((ref.sampling & kSampleNearest) != 0u)
             st = (floor(st * size) + 0.5) / size;
     }
-    return sampleTexturePage(ref.page, vec3(st, float(ref.layer)), lod);
+    return sampleTexturePage(ref.page, vec3(st, float(ref.layer)), footprint > 0.0 ? levelFor(ref, footprint) : 0.0);
 }
 
 #endif

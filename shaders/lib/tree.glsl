@@ -38,9 +38,12 @@ float boxDistance2(vec3 a_low, vec3 a_high, vec3 b_low, vec3 b_high)
 /// @return false when there is none left
 bool nextRange(vec3 low, vec3 high, float radius2, out uint first, out uint end)
 {
-    while (tree_depth > 0u)
+    uvec2 top;
+    bool descends = false; // into top; else it is to be taken from the stack
+    while (descends || tree_depth > 0u)
     {
-        uvec2 top = tree_stack[--tree_depth];
+        if (!descends)
+            top = tree_stack[--tree_depth];
         uint count = top.y & ~kTreeLeafBit;
         // A right child's range starts at its own index, a left child's ends there; the root is both.
         first = (top.y & kTreeLeafBit) != 0u || top.x == 0u ? top.x : top.x + 1u - count;
@@ -61,10 +64,10 @@ bool nextRange(vec3 low, vec3 high, float radius2, out uint first, out uint end)
             near2 = far2;
             far2 = swapped2;
         }
+        descends = near2 <= radius2;
         if (far2 <= radius2)
             tree_stack[tree_depth++] = far;
-        if (near2 <= radius2)
-            tree_stack[tree_depth++] = near;
+        top = near;
     }
     return false;
 }

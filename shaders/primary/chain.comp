@@ -22,14 +22,15 @@ layout(set = 1, binding = 7, scalar) writeonly buffer DiffusePoints { DiffusePoi
 #include "shaders/lib/ray.glsl"
 
 /// What a chain's ray that met something does there. `point` and `diffuse` are updated where it is the shading point, and
-/// `point` where the chain goes on: until it is finished its point holds the throughput so far and, in `slot`, the medium
-/// that the ray is in. @return radiance that the surface itself sends along the ray
+/// `point` where the chain goes on: until it is finished its point holds the throughput and width so far and, in `slot`, the
+/// medium that the ray is in. @return radiance that the surface itself sends along the ray
 vec3 meetSurface(Hit hit, uint path, inout ShadingPoint point, inout DiffusePoint diffuse)
 {
     vec3 direction = point.direction;
     uint medium = point.slot;
     point.slot = kNone;
-    Surface s = surfaceAt(hit.slot, hit.barycentrics, direction);
+    point.width += params.spread * hit.t;
+    Surface s = surfaceAt(hit.slot, hit.barycentrics, direction, point.width);
     SurfaceMaterial m = materialAt(s);
     vec3 throughput = point.throughput * mediumTransmittance(crossedMedium(medium, s, m), hit.t);
     if ((m.flags & kMaterialUnlit) != 0u)
@@ -46,7 +47,7 @@ vec3 meetSurface(Hit hit, uint path, inout ShadingPoint point, inout DiffusePoin
     {
         throughput /= b.smooth_specular ? p.diffuse : 1.0;
         vec3 reflectance = throughput * diffuseReflectance(b, max(0.0, -dot(s.normal, direction)));
-        point = ShadingPoint(s.position, hit.slot, direction, params.depth, throughput, hit.barycentrics);
+        point = ShadingPoint(s.position, hit.slot, direction, params.depth, throughput, hit.barycentrics, point.width);
         // Irradiance will be that of the smooth normal: even light over its hemisphere gives a bent one this much of it.
         reflectance *= 0.5 + 0.5 * dot(s.normal, s.smooth_normal);
         diffuse = DiffusePoint(s.position, unitToOctahedral(s.smooth_normal), reflectance);
@@ -71,12 +72,13 @@ void main()
         return;
     Ray ray = loadRay(i);
     Hit hit = loadHit(i);
-    ShadingPoint point = ShadingPoint(vec3(0.0), kNone, ray.direction, params.depth, vec3(1.0), vec2(0.0));
+    ShadingPoint point = ShadingPoint(vec3(0.0), kNone, ray.direction, params.depth, vec3(1.0), vec2(0.0), params.width);
     vec3 before = vec3(0.0);
     if (params.depth > 0u)
     {
         point.throughput = points[ray.path].throughput;
         point.slot = points[ray.path].slot;
+        point.width = points[ray.path].width;
         before = radiance[ray.path];
     }
     DiffusePoint diffuse = DiffusePoint(vec3(0.0), vec2(0.0), vec3(0.0));

@@ -28,8 +28,10 @@ struct ChainParams
     uint pixel_count;
     uint first_sample;
     uint seed;
+    float width;  // metres, of a camera ray where it starts
+    float spread; // by which it widens a metre
 };
-GPU_SIZE(ChainParams, 20);
+GPU_SIZE(ChainParams, 28);
 
 struct ShadingPoint // where a pixel's light is to be found: first vertex after E S* that scatters
 {
@@ -39,8 +41,9 @@ struct ShadingPoint // where a pixel's light is to be found: first vertex after 
     uint depth;        // specular events before it
     vec3 throughput;   // of the chain, 1/probability of its choices included
     vec2 barycentrics;
+    float width;       // metres, across the chain's last ray: of what textures show at once
 };
-GPU_SIZE(ShadingPoint, 52);
+GPU_SIZE(ShadingPoint, 56);
 
 struct DiffusePoint // what a shading point shows of the irradiance that falls on it, so that nobody works it out again
 {

@@ -2,7 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "shaders/lib/false_color.glsl"
-#include "shaders/lib/surface.glsl"
+#include "shaders/lib/shading_point.glsl"
 #include "shaders/views/views.h"
 
 // Every shading point in the colour of the cut node that is nearest on its surface. One thread per pixel.
@@ -25,7 +25,7 @@ void main()
     vec3 color = groundColor(radiance[pixel], params.exposure, params.curve);
     if (points[pixel].slot != kNone)
     {
-        Surface s = surfaceAt(points[pixel].slot, points[pixel].barycentrics, points[pixel].direction);
+        Surface s = surfaceAt(points[pixel]);
         uint node = nearestCutNode(s.position, s.geometric_normal, kInfinity);
         if (node != kNone)
             color = indexColor(node);

@@ -2,7 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "shaders/lib/false_color.glsl"
-#include "shaders/lib/surface.glsl"
+#include "shaders/lib/shading_point.glsl"
 #include "shaders/views/views.h"
 
 // Normals or positions of the shading points. One thread per pixel.
@@ -21,7 +21,7 @@ void main()
     vec3 color = vec3(0.0);
     if (points[pixel].slot != kNone)
     {
-        Surface s = surfaceAt(points[pixel].slot, points[pixel].barycentrics, points[pixel].direction);
+        Surface s = surfaceAt(points[pixel]);
         vec3 extent = max(scene.bounds_max - scene.bounds_min, 1e-20);
         color = params.view == kViewNormals ? 0.5 * s.normal + 0.5 : clamp((s.position - scene.bounds_min) / extent, 0.0, 1.0);
     }

@@ -13,18 +13,18 @@ TEST(LightGroups, PickEachLightByItsShareOfTheGroup)
     const std::vector<LightShare> lights{{gpu::kLightDirectional, 0.3f}, {gpu::kLightPoint, 0.125f},
                                          {gpu::kLightTriangle, 0.25f},   {gpu::kLightSpot, 0},
                                          {gpu::kLightPoint, 0.125f},     {gpu::kLightEnvironment, 0.2f}};
+    const std::vector<double> shares{0.3, 0.2, 0.5}; // of suns, skies and lamps
     const LightGroups result = groupLights(lights);
-    ASSERT_EQ(result.groups.size(), 2u);
+    ASSERT_EQ(result.groups.size(), 3u);
     std::vector<double> drawn(lights.size());
     for (const LightGroup& group : result.groups)
     {
-        EXPECT_NEAR(group.share, 0.5, 1e-6);
-        EXPECT_FALSE(group.one_place);
+        EXPECT_NEAR(group.share, shares[size_t(group.kind)], 1e-6);
+        EXPECT_EQ(group.one_place, group.kind == LightKind::kSun);
         for (uint32_t i = group.first_pick; i < group.first_pick + group.pick_count; ++i)
         {
             const gpu::LightPick& pick = result.picks[i];
-            EXPECT_EQ(lights[pick.light].isBeam(), group.beams);
-            EXPECT_EQ(lights[pick.otherwise].isBeam(), group.beams);
+            EXPECT_EQ(lights[pick.light].isBeam(), group.kind != LightKind::kLamp);
             drawn[pick.light] += double(group.share) * double(pick.threshold) / group.pick_count;
             drawn[pick.otherwise] += double(group.share) * (1 - double(pick.threshold)) / group.pick_count;
         }

@@ -3,6 +3,7 @@
 #include "format/gpu_types.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 struct Double3
@@ -66,26 +67,33 @@ inline double surfaceDistance2(Double3 d, Double3 n)
     return length2(d) + 15 * dot(d, n) * dot(d, n);
 }
 
-/// The unit vector that an octahedral encoding of 2 x 16-bit snorm stands for (Cigolle et al. 2014).
+/// The unit vector at octahedral coordinates in -1..1 (Cigolle et al. 2014).
+inline Double3 octahedralToUnit(double x, double y)
+{
+    const double z = 1 - std::abs(x) - std::abs(y), fold = std::max(-z, 0.0);
+    return normalized({x + (x >= 0 ? -fold : fold), y + (y >= 0 ? -fold : fold), z});
+}
+
+/// Its inverse.
+inline std::array<double, 2> unitToOctahedral(Double3 v)
+{
+    const double sum = std::abs(v.x) + std::abs(v.y) + std::abs(v.z), x = v.x / sum, y = v.y / sum;
+    if (v.z >= 0)
+        return {x, y};
+    return {(1 - std::abs(y)) * (x >= 0 ? 1 : -1), (1 - std::abs(x)) * (y >= 0 ? 1 : -1)};
+}
+
+/// The unit vector that an octahedral encoding of 2 x 16-bit snorm stands for.
 inline Double3 unpackedNormal(uint32_t bits)
 {
     const auto snorm = [](uint32_t half) { return std::clamp(double(int16_t(half)) / 32767, -1.0, 1.0); };
-    const double x = snorm(bits & 0xffff), y = snorm(bits >> 16), z = 1 - std::abs(x) - std::abs(y);
-    const double fold = std::max(-z, 0.0);
-    return normalized({x + (x >= 0 ? -fold : fold), y + (y >= 0 ? -fold : fold), z});
+    return octahedralToUnit(snorm(bits & 0xffff), snorm(bits >> 16));
 }
 
 /// Its inverse.
 inline uint32_t packedNormal(Double3 v)
 {
-    const double sum = std::abs(v.x) + std::abs(v.y) + std::abs(v.z);
-    double x = v.x / sum, y = v.y / sum;
-    if (v.z < 0)
-    {
-        const double folded_x = (1 - std::abs(y)) * (x >= 0 ? 1 : -1);
-        y = (1 - std::abs(x)) * (y >= 0 ? 1 : -1);
-        x = folded_x;
-    }
     const auto snorm = [](double value) { return uint32_t(uint16_t(int16_t(std::lround(value * 32767)))); };
+    const auto [x, y] = unitToOctahedral(v);
     return snorm(x) | snorm(y) << 16;
 }

@@ -258,7 +258,9 @@ protected:
                    stage.recordHarmonics(rec, sorted, harmonics,
                                          {.points = points.points,
                                           .radiance = radiance,
+                                          .noisy = radiance,
                                           .point_count = kSide * kSide,
+                                          .width = kSide,
                                           .first_sample = 0,
                                           .specular_depth = 0,
                                           .seed = 0});
@@ -389,7 +391,9 @@ TEST_F(GlossyView, OfEvenLightByRaysIsTheDirectionalReflectance)
                            stage.record(rec, rays, *cut->gpu,
                                         {.points = points.points,
                                          .radiance = radiance,
+                                         .noisy = radiance,
                                          .point_count = kPixels,
+                                         .width = 32,
                                          .first_sample = frame,
                                          .specular_depth = 1,
                                          .seed = 1});

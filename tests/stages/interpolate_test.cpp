@@ -80,6 +80,7 @@ protected:
                                 {.diffuse_points = points_->gpu->diffuse_points,
                                  .radiance = radiance,
                                  .point_count = kWidth * kHeight,
+                                 .width = kWidth,
                                  .alpha = float(kAlpha),
                                  .radius = float(kRadius)});
                });

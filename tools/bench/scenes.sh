@@ -65,14 +65,15 @@ package_of() {
     echo "$package"
 }
 
-# reference_of PACKAGE SIZE SPP TERM: the path-traced picture, rendered once for each package, size, count and term.
+# reference_of PACKAGE SIZE SPP TERM [NUMBER]: the path-traced picture, rendered once for each package, size, count, term
+# and number; those of other numbers (default 0) are other samples.
 reference_of() {
-    local hash picture
+    local hash picture number=${5:-0}
     hash=$(sha256sum "$1" | cut -c 1-12)
-    picture=$out/reference-$(basename "$1" .lumi)-$hash-$2-$3-$4.exr
+    picture=$out/reference-$(basename "$1" .lumi)-$hash-$2-$3-$4$( ((number)) && echo "-$number" || :).exr
     if [[ ! -e $picture ]]; then
         echo "$(basename "$0"): rendering $(basename "$picture")" >&2
-        "$bin/lumicut-play" "$1" --headless --mode reference --size "$2" --spp "$3" --seed 1000003 --set "term=$4" \
+        "$bin/lumicut-play" "$1" --headless --mode reference --size "$2" --spp "$3" --seed $((1000003 + number)) --set "term=$4" \
             --output "$picture" 2>"$out/reference.log" || { cat "$out/reference.log" >&2 && fail 4 "the reference of $1 failed"; }
     fi
     echo "$picture"

@@ -1,0 +1,25 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "shaders/denoise/signal.glsl"
+
+// Adds to every pixel what it shows of the light around it. One thread per pixel.
+
+layout(local_size_x = kRaysGroupSize) in;
+layout(push_constant, scalar) uniform Params { DenoiseParams params; };
+
+layout(set = 1, binding = 0) uniform usamplerBuffer Signals;  // as prepared
+layout(set = 1, binding = 1) uniform usamplerBuffer Filtered;
+layout(set = 1, binding = 2, scalar) buffer Radiance { vec3 radiance[]; };
+
+void main()
+{
+    uint pixel = gl_GlobalInvocationID.x;
+    if (pixel >= params.point_count)
+        return;
+    Signal own = unpackSignal(texelFetch(Signals, int(pixel)));
+    if (own.lobe == 0.0)
+        return;
+    Signal around = unpackSignal(texelFetch(Filtered, int(pixel)));
+    radiance[pixel] += own.reflectance * around.light / max(around.reflectance, vec3(1e-20));
+}

@@ -1,0 +1,45 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "shaders/denoise/signal.glsl"
+#include "shaders/lib/path.glsl"
+
+// Gathers what the filter asks of a pixel: where its surface is and faces, the light it has, and how much it would reflect.
+// One thread per pixel.
+
+layout(local_size_x = kRaysGroupSize) in;
+layout(push_constant, scalar) uniform Params { DenoiseParams params; };
+
+layout(set = 1, binding = 0, scalar) readonly buffer Points { ShadingPoint points[]; };
+layout(set = 1, binding = 1, scalar) readonly buffer NoisyLight { vec3 noisy_light[]; };
+layout(set = 1, binding = 2, scalar) writeonly buffer Guides { DenoiseGuide guides[]; };
+layout(set = 1, binding = 3, scalar) writeonly buffer Signals { DenoiseSignal signals[]; };
+layout(set = 1, binding = 4, scalar) readonly buffer Shares { float shares[]; }; // that have come otherwise
+
+const float kLeastReflectance = 1e-3; // of the throughput: no light is lost where the lobe's fit says none
+
+void main()
+{
+    uint pixel = gl_GlobalInvocationID.x;
+    if (pixel >= params.point_count)
+        return;
+    ShadingPoint point = points[pixel];
+    Signal signal = Signal(vec3(0.0), vec3(0.0), 0.0, 0.0);
+    vec3 smooth_normal = vec3(0.0, 0.0, 1.0), normal = smooth_normal;
+    float part = params.shared_ != 0u ? 1.0 - shares[pixel] : 1.0;
+    if (point.slot != kNone && part > 0.0)
+    {
+        Surface s = surfaceAt(point);
+        Bsdf b = bsdfAt(materialAt(s), s.front);
+        float cosine = max(0.0, -dot(s.normal, point.direction));
+        vec3 specular = b.smooth_specular ? vec3(0.0) : glossyReflectance(b, cosine) + belowColor(b, cosine) * b.transmission;
+        vec3 reflectance = params.glossy != 0u ? specular : specular + diffuseReflectance(b, cosine);
+        float share = luminance(specular) / max(luminance(reflectance), 1e-20);
+        signal = Signal(noisy_light[pixel], part * point.throughput * max(reflectance, vec3(kLeastReflectance)), max(mix(1.0, b.alpha, share), 1.0 / 255.0), 0.0);
+        smooth_normal = s.smooth_normal;
+        normal = s.normal;
+    }
+    signals[pixel] = packSignal(signal);
+    guides[pixel] =
+        DenoiseGuide(point.position, packSnorm4x8(vec4(unitToOctahedral(smooth_normal), unitToOctahedral(normal))));
+}

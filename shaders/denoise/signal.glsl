@@ -1,0 +1,34 @@
+// Signals as numbers. Functions only.
+#ifndef DENOISE_SIGNAL_GLSL
+#define DENOISE_SIGNAL_GLSL
+#include "shaders/denoise/denoise.h"
+#include "shaders/lib/math.glsl"
+
+struct Signal
+{
+    vec3 light;
+    vec3 reflectance;
+    float lobe;  // width
+    float error; // standard, of brightness()
+};
+
+DenoiseSignal packSignal(Signal s)
+{
+    float sum = s.light.r + s.light.g + s.light.b;
+    vec3 parts = clamp(vec3(s.light.rg / max(sum, 1e-30), s.lobe), 0.0, 1.0);
+    uvec3 bits = uvec3(parts * vec3(4095.0, 4095.0, 255.0) + 0.5);
+    return DenoiseSignal(sum, bits.x | bits.y << 12 | bits.z << 24,
+                         uvec2(packHalf2x16(s.reflectance.rg), packHalf2x16(vec2(s.reflectance.b, s.error))));
+}
+
+Signal unpackSignal(uvec4 bits)
+{
+    vec2 chroma = vec2(bits.y & 4095u, bits.y >> 12 & 4095u) / 4095.0, last = unpackHalf2x16(bits.w);
+    return Signal(uintBitsToFloat(bits.x) * vec3(chroma, max(0.0, 1.0 - chroma.x - chroma.y)),
+                  vec3(unpackHalf2x16(bits.z), last.x), float(bits.y >> 24) / 255.0, last.y);
+}
+
+/// Of the light around, the surface's own colours left out.
+float brightness(Signal s) { return luminance(s.light) / max(luminance(s.reflectance), 1e-20); }
+
+#endif

@@ -1,0 +1,302 @@
+// The filter over noisy light against its formula, and what it must leave alone: even light, edges, other surfaces.
+#include "runtime/stages/denoise.h"
+#include "tests/stages/ray_test.h"
+#include "tests/stages/shading_points.h"
+
+namespace
+{
+constexpr uint32_t kWidth = 64, kHeight = 48, kPixels = kWidth * kHeight;
+constexpr double kHalf = 0x1p-11, kChroma = 0.5 / 4095; // rounding of what lies in a signal
+
+class Denoise : public GiTest
+{
+protected:
+    /// A picture of the scene built so far.
+    void see(const Camera& camera)
+    {
+        const auto path = builder_.compile();
+        scene_ = load(path);
+        points_.emplace(device(), *scene_, path, camera, kWidth, kHeight);
+        pixel_angle_ = camera.vertical_fov > 0 ? 2 * std::tan(camera.vertical_fov / 2) / kHeight : 0;
+    }
+
+    /// A wall of albedo 1/2 that fills the picture, one pixel a unit of length.
+    void seeWall()
+    {
+        builder_.quad({-100, -100, 0}, {200, 0, 0}, {0, 200, 0}, builder_.material(lambert(0.5)));
+        see({.name = "",
+             .position = {0, 0, 5},
+             .forward = {0, 0, -1},
+             .up = {0, 1, 0},
+             .vertical_fov = 0,
+             .orthographic_height = kHeight});
+    }
+
+    /// @param shares parts of the light that came otherwise, by pixel; none where it is empty
+    std::vector<gpu::vec3> filtered(const std::vector<gpu::vec3>& light, uint32_t passes,
+                                    const std::vector<float>& shares = {})
+    {
+        const Buffer noisy = upload("test.noisy", light),
+                     radiance = upload("test.radiance", std::vector<gpu::vec3>(kPixels));
+        const Buffer parts = upload("test.shares", shares);
+        const DenoiseStage stage(device(), *scene_, kPixels);
+        submit(*scene_,
+               [&](Recorder& rec)
+               {
+                   rec.copy(noisy, stage.light(), kPixels * sizeof(gpu::vec3));
+                   stage.record(rec, {.points = points_->gpu->points,
+                                      .radiance = radiance,
+                                      .width = kWidth,
+                                      .height = kHeight,
+                                      .passes = passes,
+                                      .pixel_angle = float(pixel_angle_),
+                                      .glossy = false,
+                                      .shares = parts,
+                                      .shared = !shares.empty()});
+               });
+        return contents<gpu::vec3>(radiance, kPixels);
+    }
+
+    Double3 reflectanceAt(uint32_t pixel) const
+    {
+        const ShadingPoints::Point& p = points_->points[pixel];
+        return {p.throughput.x * p.diffuse.x, p.throughput.y * p.diffuse.y, p.throughput.z * p.diffuse.z};
+    }
+
+    SceneBuilder builder_;
+    std::unique_ptr<SceneGpu> scene_;
+    std::optional<ShadingPoints> points_;
+    double pixel_angle_ = 0; // radians
+};
+
+class DenoiseOfObjects : public Denoise
+{
+protected:
+    void SetUp() override
+    {
+        GiTest::SetUp();
+        const nlohmann::json colored =
+            with(lambert(1), {{"pbrMetallicRoughness", {{"baseColorFactor", {0.8, 0.5, 0.2, 1}}}}});
+        builder_.floor(3, 0, builder_.material(colored));
+        builder_.sphere({-0.4f, 0.4f, 0}, 0.4f, 16, true, builder_.material(lambert(0.6)));
+        builder_.box({0.3f, 0, -0.8f}, {0.9f, 0.7f, -0.2f}, builder_.material(lambert(0.3)));
+        const gpu::vec3 forward = normalize({-0.15f, -0.35f, -1});
+        see({.name = "",
+             .position = {0.4f, 1.2f, 2.4f},
+             .forward = forward,
+             .up = normalize(cross(cross(forward, {0, 1, 0}), forward)),
+             .vertical_fov = 0.9f,
+             .orthographic_height = 0});
+    }
+};
+
+/// A pixel as the filter sees it, in double precision.
+struct Seen
+{
+    Double3 light, reflectance, normal;
+    double error = 0;
+    double brightness() const { return luminanceOf(light) / luminanceOf(reflectance); }
+};
+
+/// The normal as 2 x 8 bits hold it. @param margin lowered to how near it was to being rounded otherwise, in steps
+Double3 rounded(Double3 n, double& margin)
+{
+    std::array<double, 2> at = unitToOctahedral(n);
+    for (double& x : at)
+    {
+        margin = std::min(margin, 0.5 - std::abs(x * 127 - std::round(x * 127)));
+        x = std::round(x * 127) / 127;
+    }
+    return octahedralToUnit(at[0], at[1]);
+}
+
+TEST_F(DenoiseOfObjects, IsTheWeightedMeanOfNinePixelsAPass)
+{
+    Random random(3);
+    std::vector<gpu::vec3> light(kPixels);
+    std::vector<Seen> seen(kPixels);
+    std::vector<double> margins(kPixels, 1);
+    for (uint32_t i = 0; i < kPixels; ++i)
+    {
+        const ShadingPoints::Point& p = points_->points[i];
+        const Double3 reflectance = reflectanceAt(i);
+        if (p.exists)
+            light[i] = {float(reflectance.x * random.unit()), float(reflectance.y * random.unit()),
+                        float(reflectance.z * random.unit())};
+        seen[i] = {.light = light[i], .reflectance = reflectance, .normal = {}};
+        if (p.exists)
+            seen[i].normal = rounded(p.normal, margins[i]);
+    }
+    const std::vector<Seen> before = seen;
+    for (int pass = 0, step = 1; pass < 3; ++pass, step *= 3)
+    {
+        const std::vector<Seen> from = seen;
+        const std::vector<double> from_margins = margins;
+        for (int i = 0; i < int(kPixels); ++i)
+        {
+            if (!points_->points[size_t(i)].exists)
+                continue;
+            const Seen& center = from[size_t(i)];
+            Double3 sum, reflectance;
+            double weights = 0, squares = 0, mean = 0, mean2 = 0, variance = 0;
+            for (int dy = -1; dy <= 1; ++dy)
+                for (int dx = -1; dx <= 1; ++dx)
+                {
+                    const int x = i % int(kWidth) + dx * step, y = i / int(kWidth) + dy * step;
+                    if (x < 0 || y < 0 || x >= int(kWidth) || y >= int(kHeight))
+                        continue;
+                    const size_t k = size_t(y) * kWidth + size_t(x);
+                    if (!points_->points[k].exists)
+                        continue;
+                    const Seen& other = from[k];
+                    margins[size_t(i)] = std::min(margins[size_t(i)], from_margins[k]);
+                    double weight = 1;
+                    if (dx != 0 || dy != 0)
+                    {
+                        const Double3 d = points_->points[k].position - points_->points[size_t(i)].position;
+                        const double off = dot(center.normal + other.normal, d) / (2 * length(d) * 0.15),
+                                     bend2 = length2(other.normal - center.normal) +
+                                             pixel_angle_ * pixel_angle_ * step * step * (dx * dx + dy * dy);
+                        weight =
+                            std::exp2(-0.5 * (dx * dx + dy * dy)) * std::exp(-off * off - bend2 / (2 * 0.25 * 0.25));
+                        if (pass > 0)
+                            weight *= std::exp(-std::abs(other.brightness() - center.brightness()) /
+                                               (2 * std::hypot(center.error, other.error)));
+                    }
+                    sum = sum + weight * other.light;
+                    reflectance = reflectance + weight * other.reflectance;
+                    weights += weight;
+                    squares += weight * weight;
+                    mean += weight * other.brightness();
+                    mean2 += weight * other.brightness() * other.brightness();
+                    variance += weight * weight * other.error * other.error;
+                }
+            Seen& out = seen[size_t(i)];
+            out.light = (1 / weights) * sum;
+            out.reflectance = (1 / weights) * reflectance;
+            if (pass == 0)
+                variance = std::max(0.0, mean2 / weights - mean * mean / (weights * weights)) * squares;
+            out.error = std::sqrt(variance) / weights;
+        }
+        const auto got = filtered(light, uint32_t(pass) + 1);
+        double worst = 0;
+        uint32_t compared = 0;
+        for (uint32_t i = 0; i < kPixels; ++i)
+        {
+            if (!points_->points[i].exists || margins[i] < 1e-4)
+                continue;
+            const Double3 r = before[i].reflectance, l = seen[i].light, around = seen[i].reflectance;
+            const Double3 want{r.x * l.x / around.x, r.y * l.y / around.y, r.z * l.z / around.z}, ours = got[i];
+            worst = std::max(worst, largest(max(ours - want, want - ours)) / (want.x + want.y + want.z));
+            ++compared;
+        }
+        // Each pass rounds light and reflectance anew; weights by brightness pass that on, and their own rounding.
+        fmt::print("  {} passes: {} pixels, worst deviation {:.5f}\n", pass + 1, compared, worst);
+        EXPECT_GT(compared, kPixels / 3);
+        EXPECT_LE(worst, (pass + 2) * 2 * (kChroma * 3 + kHalf));
+    }
+}
+
+TEST_F(DenoiseOfObjects, LeavesEvenLightEvenWhateverItsColor)
+{
+    std::vector<gpu::vec3> light(kPixels);
+    const Double3 even{3, 2, 0.5};
+    for (uint32_t i = 0; i < kPixels; ++i)
+    {
+        const Double3 r = reflectanceAt(i);
+        light[i] = {float(r.x * even.x), float(r.y * even.y), float(r.z * even.z)};
+    }
+    const auto got = filtered(light, 3);
+    for (uint32_t i = 0; i < kPixels; ++i)
+    {
+        const Double3 want = light[i], ours = got[i];
+        EXPECT_LE(largest(max(ours - want, want - ours)), 4 * (kChroma * 3 + kHalf) * (want.x + want.y + want.z)) << i;
+    }
+}
+
+/// Where something else gives part of the light, noise is what is left of it.
+TEST_F(DenoiseOfObjects, LeavesPartOfEvenLightThatPart)
+{
+    Random random(11);
+    std::vector<gpu::vec3> light(kPixels);
+    std::vector<float> shares(kPixels);
+    for (uint32_t i = 0; i < kPixels; ++i)
+    {
+        shares[i] = i % 3 == 0 ? 1 : random.between(0, 0.9f);
+        const Double3 r = (1 - double(shares[i])) * reflectanceAt(i);
+        light[i] = {float(r.x), float(r.y), float(r.z)};
+    }
+    const auto got = filtered(light, 3, shares);
+    for (uint32_t i = 0; i < kPixels; ++i)
+    {
+        const Double3 want = light[i], ours = got[i];
+        EXPECT_LE(largest(max(ours - want, want - ours)), 4 * (kChroma * 3 + kHalf) * (want.x + want.y + want.z)) << i;
+    }
+}
+
+TEST_F(DenoiseOfObjects, KeepsLightOnItsSurface)
+{
+    // The floor alone is lit, by noise.
+    Random random(5);
+    std::vector<gpu::vec3> light(kPixels);
+    const auto onFloor = [&](uint32_t i)
+    { return points_->points[i].exists && std::abs(points_->points[i].position.y) < 1e-4; };
+    for (uint32_t i = 0; i < kPixels; ++i)
+        if (onFloor(i) && random.unit() < 0.5f)
+            light[i] = {1, 1, 1};
+    const auto got = filtered(light, 3);
+    uint32_t tops = 0;
+    for (uint32_t i = 0; i < kPixels; ++i)
+    {
+        const ShadingPoints::Point& p = points_->points[i];
+        if (!p.exists || onFloor(i))
+            continue;
+        // The box's top faces as the floor does, a metre nearer: what parts them is the way between.
+        tops += p.normal.y > 0.999;
+        EXPECT_LE(got[i].x, 1e-3) << i << ", normal " << p.normal.x << ' ' << p.normal.y << ' ' << p.normal.z;
+    }
+    EXPECT_GE(tops, 10u);
+}
+
+TEST_F(Denoise, AveragesNoiseAsMuchAsItsWeightsSay)
+{
+    seeWall();
+    Random random(7);
+    std::vector<gpu::vec3> light(kPixels);
+    double mean_before = 0;
+    for (gpu::vec3& l : light)
+    {
+        l.x = l.y = l.z = random.unit();
+        mean_before += l.x / kPixels;
+    }
+    const auto got = filtered(light, 1);
+    double sum = 0, squares = 0;
+    uint32_t count = 0;
+    for (uint32_t y = 1; y + 1 < kHeight; ++y)
+        for (uint32_t x = 1; x + 1 < kWidth; ++x, ++count)
+            sum += got[y * kWidth + x].x, squares += double(got[y * kWidth + x].x) * got[y * kWidth + x].x;
+    const double mean = sum / count, variance = squares / count - mean * mean;
+    const double weights = 1 + 4 * std::exp2(-0.5) + 4 * 0.5, gain = (1 + 4 * 0.5 + 4 * 0.25) / (weights * weights);
+    // Neighbours share pixels: the variance is known as well as from a ninth as many numbers.
+    EXPECT_NEAR(variance, gain / 12, 4 * std::sqrt(2.0 * 9 / count) * gain / 12);
+    EXPECT_NEAR(mean, mean_before, 4 * std::sqrt(1.0 / 12 / kPixels));
+}
+
+TEST_F(Denoise, LeavesShadowsWithoutNoiseSharp)
+{
+    seeWall();
+    std::vector<gpu::vec3> light(kPixels);
+    for (uint32_t i = 0; i < kPixels; ++i)
+        if (i % kWidth >= kWidth / 2)
+            light[i] = {2, 2, 2};
+    const auto got = filtered(light, 3);
+    // The first pass, which does not know the noise yet, takes the pixels at the edge for noisy. Else a pixel three off
+    // the edge would get two fifths of the other side's light, as from a square of 27 pixels.
+    for (uint32_t i = 0; i < kPixels; ++i)
+    {
+        const uint32_t x = i % kWidth, from_edge = x < kWidth / 2 ? kWidth / 2 - 1 - x : x - kWidth / 2;
+        const double crossed = std::abs(double(got[i].x) - light[i].x) / 2;
+        EXPECT_LE(crossed, from_edge == 0 ? 0.3 : from_edge < 13 ? 0.1 : 2 * kHalf) << x;
+    }
+}
+} // namespace
