@@ -92,7 +92,7 @@ GlobalIllumination::GlobalIllumination(const Device& device, const SceneGpu& sce
     longest_side_ = std::max({x, y, z, 1e-20f});
     if (GuideStage::helps(scene))
         guide_.emplace(device, scene, settings.photon_count);
-    if (settings.denoise_passes > 0)
+    if (settings.denoise_passes > 0 && (direct_.isNoisy() || has_specular_))
         denoise_.emplace(device, scene, width * height);
 }
 
@@ -121,10 +121,13 @@ const Buffer& GlobalIllumination::record(Recorder& rec, const RayStage& rays, co
         const PhotonTreeStage::Output map = recordPhotons(frame);
         const CutStage::Output cut = recordCut(frame, map);
         std::optional<InterpolateStage::Sorted> samples;
-        if (gathersAtPixels(frame))
+        const bool looks = frame.shows(gpu::kTermIndirect) || guide_; // the guide learns the same whatever is shown
+        if (looks && gathersAtPixels(frame))
             recordPixelGather(frame, map, cut);
-        else if (frame.shows(gpu::kTermIndirect) || reflectsByHarmonics(frame))
+        else if (looks || reflectsByHarmonics(frame))
             samples.emplace(recordGather(frame, map, cut));
+        if (!frame.shows(gpu::kTermIndirect))
+            rec.clear(frame.radiance); // of what pixels have gathered; a picture of glossy light alone holds nothing else yet
         if (samples && frame.shows(gpu::kTermIndirect))
             recordIndirect(frame, *samples);
         if (glossy)
@@ -350,8 +353,7 @@ void GlobalIllumination::recordIndirect(const Frame& frame, const InterpolateSta
 bool GlobalIllumination::gathersAtPixels(const Frame& frame) const
 {
     const uint32_t rays = gather_.raysPerPixel(frame.pixel_count);
-    return frame.settings.view != gpu::kViewIrradiance && frame.shows(gpu::kTermIndirect) &&
-           gather_.suitsPixels(frame.pixel_count) &&
+    return frame.settings.view != gpu::kViewIrradiance && gather_.suitsPixels(frame.pixel_count) &&
            frame.index >= std::max(kOwnRays / rays, kLeastInterpolated);
 }
 
@@ -379,7 +381,6 @@ bool GlobalIllumination::reflectsByHarmonics(const Frame& frame) const
 void GlobalIllumination::recordGlossy(const Frame& frame, const CutStage::Output& cut,
                                       const InterpolateStage::Sorted* samples) const
 {
-    const auto scope = frame.rec.scope("glossy");
     const GlossyStage::Input in{.points = frame.points,
                                 .radiance = frame.radiance,
                                 .noisy = noisyLight(frame),
@@ -390,9 +391,12 @@ void GlobalIllumination::recordGlossy(const Frame& frame, const CutStage::Output
                                 .seed = frame.camera.seed,
                                 .sure_reflectance = frame.index == 0 ? kSureInMotion : kSureStanding,
                                 .shared = reflectsByHarmonics(frame)};
-    if (in.shared)
-        glossy_.recordHarmonics(frame.rec, *samples, gather_.harmonics(), in);
-    glossy_.record(frame.rec, frame.rays, cut, in);
+    {
+        const auto scope = frame.rec.scope("glossy");
+        if (in.shared)
+            glossy_.recordHarmonics(frame.rec, *samples, gather_.harmonics(), in);
+        glossy_.record(frame.rec, frame.rays, cut, in);
+    }
     recordDenoise(frame, true);
 }
 

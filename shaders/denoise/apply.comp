@@ -21,5 +21,5 @@ void main()
     if (own.lobe == 0.0)
         return;
     Signal around = unpackSignal(texelFetch(Filtered, int(pixel)));
-    radiance[pixel] += own.reflectance * around.light / max(around.reflectance, vec3(1e-20));
+    radiance[pixel] += own.reflectance * around.light / around.reflectance;
 }

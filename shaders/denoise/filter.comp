@@ -68,9 +68,9 @@ void main()
             continue;
         uint neighbour = uint(place.y * size.x + place.x);
         Signal other = unpackSignal(texelFetch(Signals, int(neighbour)));
-        if (other.lobe == 0.0)
-            continue;
         float steps2 = dot(offset, offset), other_bright = brightness(other);
+        if (other.lobe == 0.0 || isnan(other_bright) || isinf(other_bright))
+            continue; // one bad sample must not spread
         float weight = exp2(-0.5 * steps2) * likeness(guide, loadGuide(neighbour), center.lobe, other.lobe,
                                                       float(params.step_) * sqrt(steps2));
         if (params.step_ > 1u)

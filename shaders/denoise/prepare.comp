@@ -16,7 +16,7 @@ layout(set = 1, binding = 2, scalar) writeonly buffer Guides { DenoiseGuide guid
 layout(set = 1, binding = 3, scalar) writeonly buffer Signals { DenoiseSignal signals[]; };
 layout(set = 1, binding = 4, scalar) readonly buffer Shares { float shares[]; }; // that have come otherwise
 
-const float kLeastReflectance = 1e-3; // of the throughput: no light is lost where the lobe's fit says none
+const float kLeastReflectance = 1e-4; // no light is lost where a lobe's fit says none, and no half is too small
 
 void main()
 {
@@ -35,7 +35,9 @@ void main()
         vec3 specular = b.smooth_specular ? vec3(0.0) : glossyReflectance(b, cosine) + belowColor(b, cosine) * b.transmission;
         vec3 reflectance = params.glossy != 0u ? specular : specular + diffuseReflectance(b, cosine);
         float share = luminance(specular) / max(luminance(reflectance), 1e-20);
-        signal = Signal(noisy_light[pixel], part * point.throughput * max(reflectance, vec3(kLeastReflectance)), max(mix(1.0, b.alpha, share), 1.0 / 255.0), 0.0);
+        if (params.glossy == 0u || !b.smooth_specular) // else it sends no ray
+            signal = Signal(noisy_light[pixel], max(part * point.throughput * reflectance, vec3(kLeastReflectance)),
+                            max(mix(1.0, b.alpha, share), 1.0 / 255.0), 0.0);
         smooth_normal = s.smooth_normal;
         normal = s.normal;
     }

@@ -12,13 +12,16 @@ struct Signal
     float error; // standard, of brightness()
 };
 
+const float kLargestHalf = 65504.0; // infinity would spread
+
 DenoiseSignal packSignal(Signal s)
 {
     float sum = s.light.r + s.light.g + s.light.b;
     vec3 parts = clamp(vec3(s.light.rg / max(sum, 1e-30), s.lobe), 0.0, 1.0);
     uvec3 bits = uvec3(parts * vec3(4095.0, 4095.0, 255.0) + 0.5);
     return DenoiseSignal(sum, bits.x | bits.y << 12 | bits.z << 24,
-                         uvec2(packHalf2x16(s.reflectance.rg), packHalf2x16(vec2(s.reflectance.b, s.error))));
+                         uvec2(packHalf2x16(min(s.reflectance.rg, kLargestHalf)),
+                               packHalf2x16(min(vec2(s.reflectance.b, s.error), kLargestHalf))));
 }
 
 Signal unpackSignal(uvec4 bits)
@@ -29,6 +32,6 @@ Signal unpackSignal(uvec4 bits)
 }
 
 /// Of the light around, the surface's own colours left out.
-float brightness(Signal s) { return luminance(s.light) / max(luminance(s.reflectance), 1e-20); }
+float brightness(Signal s) { return luminance(s.light) / luminance(s.reflectance); }
 
 #endif

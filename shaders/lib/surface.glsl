@@ -145,8 +145,10 @@ SurfaceMaterial materialAt(Surface s)
     m.emission = surfaceEmission(s.material, s.uv0, s.uv1, s.footprints);
 
     uint ref = loadMaterial(s.material).base_color_texture;
+    // Coarse levels mix in the colours of texels that are cut away, where any are.
+    bool cut_away = (m.flags & (kMaterialAlphaMask | kMaterialAlphaBlend)) != 0u;
     if (hasFeature(kFeatureBaseColorMaps) && ref != kNone)
-        m.base_color *= sampleTexture(ref, s.uv0, s.uv1, s.footprints).rgb;
+        m.base_color *= sampleTexture(ref, s.uv0, s.uv1, cut_away ? vec2(0.0) : s.footprints).rgb;
     ref = loadMaterial(s.material).metallic_roughness_texture;
     if (hasFeature(kFeatureMetallicRoughnessMaps) && ref != kNone)
     {

@@ -34,8 +34,8 @@ vec4 sampleTexturePage(uint page, vec3 uvw, float lod)
 }
 #undef TEXTURE_PAGE_CASE
 
-/// The hardware sampler repeats; clamping and mirroring bend the coordinate before it (half a texel keeps bilinear
-/// footprints inside).
+/// The hardware sampler repeats; clamping and mirroring bend the coordinate before it.
+/// @param size of the level that is read, texels: half a texel keeps bilinear footprints inside
 float wrapCoordinate(float x, uint mode, float size)
 {
     if (mode == kWrapMirror)
@@ -48,7 +48,7 @@ float levelFor(TextureRef ref, float footprint)
 {
     vec2 size = texturePageSize(ref.page);
     float area = abs(ref.u_row.x * ref.v_row.y - ref.u_row.y * ref.v_row.x) * size.x * size.y;
-    return max(0.0, log2(footprint * sqrt(area)));
+    return log2(max(1.0, footprint * sqrt(area)));
 }
 
 /// One texture around the surface coordinates. @param footprints how far around, in units of uv0 and uv1; 0: a point
@@ -57,15 +57,17 @@ vec4 sampleTexture(uint ref_index, vec2 uv0, vec2 uv1, vec2 footprints)
     TextureRef ref = texture_refs[ref_index];
     vec3 uv = vec3((ref.sampling & kSampleUv1) != 0u ? uv1 : uv0, 1.0);
     float footprint = (ref.sampling & kSampleUv1) != 0u ? footprints.y : footprints.x;
+    float level = footprint > 0.0 ? levelFor(ref, footprint) : 0.0;
     vec2 st = vec2(dot(ref.u_row, uv), dot(ref.v_row, uv));
     if (ref.sampling != kWrapRepeat && ref.sampling != kSampleUv1)
     {
         vec2 size = texturePageSize(ref.page);
-        st = vec2(wrapCoordinate(st.x, ref.sampling & 3u, size.x), wrapCoordinate(st.y, (ref.sampling >> 2) & 3u, size.y));
+        vec2 coarse = max(floor(size * exp2(-ceil(level))), vec2(1.0)); // of the coarser of two levels that are blended
+        st = vec2(wrapCoordinate(st.x, ref.sampling & 3u, coarse.x), wrapCoordinate(st.y, (ref.sampling >> 2) & 3u, coarse.y));
         if ((ref.sampling & kSampleNearest) != 0u)
             st = (floor(st * size) + 0.5) / size;
     }
-    return sampleTexturePage(ref.page, vec3(st, float(ref.layer)), footprint > 0.0 ? levelFor(ref, footprint) : 0.0);
+    return sampleTexturePage(ref.page, vec3(st, float(ref.layer)), level);
 }
 
 #endif

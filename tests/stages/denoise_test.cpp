@@ -3,6 +3,9 @@
 #include "tests/stages/ray_test.h"
 #include "tests/stages/shading_points.h"
 
+#include <algorithm>
+#include <limits>
+
 namespace
 {
 constexpr uint32_t kWidth = 64, kHeight = 48, kPixels = kWidth * kHeight;
@@ -256,6 +259,67 @@ TEST_F(DenoiseOfObjects, KeepsLightOnItsSurface)
         EXPECT_LE(got[i].x, 1e-3) << i << ", normal " << p.normal.x << ' ' << p.normal.y << ' ' << p.normal.z;
     }
     EXPECT_GE(tops, 10u);
+}
+
+/// Lamps as bright as exporters make them, close to narrow lobes of metal and to wide ones beside it.
+TEST_F(Denoise, StandsBrightLampsOnMetal)
+{
+    for (const float x : {-0.6f, -0.2f, 0.2f, 0.6f})
+        builder_.quad({x - 0.2f, -1, 0}, {0.4f, 0, 0}, {0, 2, 0},
+                      builder_.material(x * x < 0.1f
+                                            ? nlohmann::json{{"pbrMetallicRoughness", {{"roughnessFactor", 0.2}}}}
+                                            : lambert(0.5)));
+    for (const double x : {-0.3, 0.4})
+        builder_.light({{"type", "point"}, {"intensity", 1e6}}, {{"translation", {x, 0.2, 0.3}}});
+    const auto scene = load(builder_.compile());
+    const Camera camera{.name = "",
+                        .position = {0, 0, 2},
+                        .forward = {0, 0, -1},
+                        .up = {0, 1, 0},
+                        .vertical_fov = 0.8f,
+                        .orthographic_height = 0};
+    const Picture picture =
+        renderGi(*scene, camera, smallSettings(), 1, kWidth, kHeight); // expects every sample to be finite
+    EXPECT_GT(std::ranges::max(picture.pixels, {}, &gpu::vec3::x).x, 65504) << "else it would not matter";
+}
+
+/// One bad sample is one bad pixel.
+TEST_F(Denoise, KeepsWhatIsNotFiniteToItself)
+{
+    seeWall();
+    std::vector<gpu::vec3> light(kPixels, {1, 1, 1});
+    constexpr uint32_t kBad = kWidth * kHeight / 2 + kWidth / 2;
+    light[kBad].y = std::numeric_limits<float>::infinity();
+    light[kBad + 1].y = std::numeric_limits<float>::quiet_NaN();
+    const auto got = filtered(light, 3);
+    for (uint32_t i = 0; i < kPixels; ++i)
+        if (i != kBad && i != kBad + 1)
+        {
+            EXPECT_NEAR(got[i].y, 1, 4 * 3 * (kChroma * 3 + kHalf)) << i;
+        }
+}
+
+/// As behind glass that lets next to nothing through.
+TEST_F(Denoise, AddsNoLightWhereNextToNothingIsReflected)
+{
+    builder_.quad({-100, -100, 0}, {100, 0, 0}, {0, 200, 0}, builder_.material(lambert(0.5)));
+    builder_.quad({0, -100, 0}, {100, 0, 0}, {0, 200, 0}, builder_.material(lambert(1e-7)));
+    see({.name = "",
+         .position = {0, 0, 5},
+         .forward = {0, 0, -1},
+         .up = {0, 1, 0},
+         .vertical_fov = 0,
+         .orthographic_height = kHeight});
+    Random random(13);
+    std::vector<gpu::vec3> light(kPixels);
+    for (uint32_t i = 0; i < kPixels; ++i)
+        light[i].x = light[i].y = light[i].z = float(reflectanceAt(i).x) * 2 * random.unit();
+    const auto got = filtered(light, 3);
+    for (uint32_t i = 0; i < kPixels; ++i)
+        if (i % kWidth > kWidth / 2)
+        {
+            EXPECT_LE(got[i].x, 2 * 1e-4) << i; // what the least reflectance shows of light as bright as next to it
+        }
 }
 
 TEST_F(Denoise, AveragesNoiseAsMuchAsItsWeightsSay)

@@ -1,4 +1,5 @@
 // The frame of global illumination as a whole: a furnace, equal bits, and scenes that ask for trouble.
+#include "shaders/lib/terms.h"
 #include "tests/stages/gi_test.h"
 
 #include <cstring>
@@ -86,11 +87,17 @@ bool equalBits(const Picture& a, const Picture& b)
            std::memcmp(a.pixels.data(), b.pixels.data(), a.pixels.size() * sizeof(gpu::vec3)) == 0;
 }
 
+/// So many that photons are guided.
+void lamps(SceneBuilder& builder)
+{
+    for (int i = 0; i < 16; ++i)
+        builder.light({{"type", "point"}, {"intensity", 0.1}}, {{"translation", {0.1 * i - 0.8, 1.5, 0.4}}});
+}
+
 TEST_F(GiFrame, GivesTheSameBitsForTheSameSeedAndOthersForAnother)
 {
     SceneBuilder builder;
-    for (int i = 0; i < 16; ++i) // so many that photons are guided
-        builder.light({{"type", "point"}, {"intensity", 0.1}}, {{"translation", {0.1 * i - 0.8, 1.5, 0.4}}});
+    lamps(builder);
     const auto scene = load(room(builder));
     Settings settings = smallSettings();
     settings.gather_rays = 256; // 17 a pixel: the last frames gather at every pixel
@@ -99,6 +106,43 @@ TEST_F(GiFrame, GivesTheSameBitsForTheSameSeedAndOthersForAnother)
     const Picture first = picture(1);
     EXPECT_TRUE(equalBits(first, picture(1)));
     EXPECT_FALSE(equalBits(first, picture(2)));
+}
+
+/// In the first frame, which is filtered and reflects by harmonics, and after frames that gather at every pixel.
+TEST_F(GiFrame, IsTheSumOfItsTermsUpToRounding)
+{
+    SceneBuilder builder;
+    lamps(builder);
+    builder.quad({-0.9f, 0.01f, 0.9f}, {1.8f, 0, 0}, {0, 0, -0.6f}, builder.material({{"pbrMetallicRoughness", {{"metallicFactor", 0}, {"roughnessFactor", 0.8}}}}));
+    const auto scene = load(room(builder));
+    Settings settings = smallSettings();
+    settings.gather_rays = 256;
+    for (const uint32_t frames : {1u, 12u})
+    {
+        const auto pictureOf = [&](uint32_t term)
+        {
+            settings.term = term;
+            return renderGi(*scene, kCamera, settings, frames, kWidth, kHeight).pixels;
+        };
+        const auto all = pictureOf(gpu::kTermAll);
+        std::vector<Double3> sum(all.size());
+        for (const uint32_t term : {gpu::kTermEmission, gpu::kTermDirect, gpu::kTermCaustics, gpu::kTermIndirect, gpu::kTermGlossy})
+        {
+            const auto part = pictureOf(term);
+            double light = 0;
+            for (size_t i = 0; i < all.size(); ++i)
+            {
+                sum[i] = sum[i] + Double3(part[i]);
+                light += luminanceOf(part[i]);
+            }
+            EXPECT_GT(light, 0) << term;
+        }
+        // Nothing is negative: every addition errs by half a unit in the last place at most. A pixel gets up to eight shares of
+        // light a frame, and frames add up.
+        const double tolerance = 2 * (8 + frames) * 0x1p-24;
+        for (size_t i = 0; i < all.size(); ++i)
+            ASSERT_LE(largest(max(sum[i] - all[i], Double3(all[i]) - sum[i])), tolerance * largest(all[i])) << i << ", frames " << frames;
+    }
 }
 
 struct Odd
