@@ -17,17 +17,18 @@ layout(set = 1, binding = 3, scalar) buffer Nodes { CutNode nodes[]; };
 #include "shaders/lib/hit.glsl"
 #include "shaders/lib/ray.glsl"
 
-/// The node's weight where a ray came down, times the area that it stands for, against what a plane would have there.
-float covered(CutNode node, vec3 normal, Ray ray, Hit hit)
+/// The node's weight where a ray came down, times the area that it stands for, against what a plane would have there: x where
+/// the ray met a surface's front, y where it met its back.
+vec2 covered(CutNode node, vec3 normal, Ray ray, Hit hit)
 {
     if (hit.slot == kNone)
-        return 0.0;
+        return vec2(0.0);
     Surface s = surfaceAt(hit.slot, hit.barycentrics, ray.direction);
-    if (!s.front && (loadMaterial(s.material).flags & kMaterialDoubleSided) == 0u)
-        return 0.0; // within something solid
     vec3 on_plane = ray.origin - normal * dot(ray.origin - node.center, normal);
-    return cutWeight(node, s.position, s.geometric_normal) /
-           (max(cutWeight(node, on_plane, normal), 1e-3) * max(dot(s.geometric_normal, normal), 0.2));
+    float weight = cutWeight(node, s.position, s.geometric_normal) /
+                   (max(cutWeight(node, on_plane, normal), 1e-3) * max(dot(s.geometric_normal, normal), 0.2));
+    bool front = s.front || (loadMaterial(s.material).flags & kMaterialDoubleSided) != 0u;
+    return front ? vec2(weight, 0.0) : vec2(0.0, weight);
 }
 
 void main()
@@ -38,9 +39,11 @@ void main()
         return;
     CutNode node = nodes[i];
     vec3 normal = unpackNormal(node.normal);
-    float sum = 0.0;
+    vec2 sums = vec2(0.0);
     for (uint k = i * ray_count; k < (i + 1u) * ray_count; ++k)
-        sum += covered(node, normal, loadRay(k), loadHit(k));
+        sums += covered(node, normal, loadRay(k), loadHit(k));
+    // Backs are the inside of something solid, unless they are most of what there is: photons lie on backs, too.
+    float sum = max(sums.x, sums.y);
     // (n + 1) / (sum + 1): of n independent rays its mean is 1 / the part that is there, not more.
     nodes[i].irradiance *= min(float(ray_count + 1u) / (sum + 1.0), kMostUncovered);
 }

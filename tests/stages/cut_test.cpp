@@ -374,12 +374,18 @@ TEST_F(Cuts, ReachAsFarAsDensityEstimationWould)
     }
 }
 
-/// On a strip much narrower than its support a node's light would fall beside it for the most part.
-TEST_F(Cuts, KeepTheirLightOnNarrowSurfaces)
+/// On a strip much narrower than its support a node's light would fall beside it for the most part. Photons lie on backs of
+/// surfaces as on fronts.
+class CutsOnNarrowSurfaces : public Cuts, public testing::WithParamInterface<bool>
+{
+};
+
+TEST_P(CutsOnNarrowSurfaces, KeepTheirLight)
 {
     constexpr float kWidth = 0.1f, kLength = 4;
+    const gpu::vec3 across{0, 0, kWidth}, along{kLength, 0, 0};
     SceneBuilder builder;
-    builder.quad({-kLength / 2, 0, -kWidth / 2}, {0, 0, kWidth}, {kLength, 0, 0}, builder.material(lambert(0.5)));
+    builder.quad({-kLength / 2, 0, -kWidth / 2}, GetParam() ? along : across, GetParam() ? across : along, builder.material(lambert(0.5)));
     const auto scene = load(builder.compile());
     Random random(11);
     std::vector<gpu::Photon> photons;
@@ -434,6 +440,9 @@ TEST_F(Cuts, KeepTheirLightOnNarrowSurfaces)
     // 64 rays each: the standard error of one node's covered part p is sqrt(p (1 - p) / 64), below 0.2 p for p > 0.3.
     EXPECT_NEAR(after, power, 4 * 0.2 / std::sqrt(count) * power);
 }
+
+INSTANTIATE_TEST_SUITE_P(, CutsOnNarrowSurfaces, testing::Bool(),
+                         [](const auto& side) { return side.param ? "FromBehind" : "FromTheFront"; });
 
 TEST_F(Cuts, RefineWhereEstimatesDisagreeAndNowhereElse)
 {
