@@ -28,6 +28,9 @@ Result<Camera> chooseCamera(const package::Package& package, const std::string& 
 /// What shaders/primary/generate.comp needs of it for a picture of width x height pixels; sampling fields are left 0.
 gpu::CameraParams cameraParams(const Camera& camera, uint32_t width, uint32_t height);
 
+/// How far apart neighbouring pixels are: metres at distance 1, which are radians at the centre, or, orthographic, anywhere.
+float pixelSide(const gpu::CameraParams& camera);
+
 gpu::vec3 operator+(gpu::vec3 a, gpu::vec3 b);
 gpu::vec3 operator*(float s, gpu::vec3 v);
 gpu::vec3 cross(gpu::vec3 a, gpu::vec3 b);

@@ -1,5 +1,6 @@
 #include "runtime/global_illumination.h"
 
+#include "runtime/camera.h"
 #include "shaders/lib/terms.h"
 
 #include <algorithm>
@@ -168,15 +169,13 @@ const Buffer& GlobalIllumination::noisyLight(const Frame& frame) const
 /// @param glossy whether the light is that of specular lobes alone
 void GlobalIllumination::recordDenoise(const Frame& frame, bool glossy) const
 {
-    const gpu::vec3 right = frame.camera.right;
-    const float image_width = 2 * std::hypot(right.x, right.y, right.z);
     if (const uint32_t passes = denoisePasses(frame))
         denoise_->record(frame.rec, {.points = frame.points,
                                      .radiance = frame.radiance,
                                      .width = width_,
                                      .height = height_,
                                      .passes = passes,
-                                     .pixel_angle = frame.camera.orthographic ? 0 : image_width / float(width_),
+                                     .pixel_angle = frame.camera.orthographic ? 0 : pixelSide(frame.camera),
                                      .glossy = glossy,
                                      .shares = glossy_.shares(),
                                      .shared = glossy && reflectsByHarmonics(frame)});

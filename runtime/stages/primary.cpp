@@ -1,6 +1,6 @@
 #include "runtime/stages/primary.h"
 
-#include <cmath>
+#include "runtime/camera.h"
 
 PrimaryStage::PrimaryStage(const Device& device, const SceneGpu& scene, uint32_t max_pixels)
     : has_specular_(scene.hasFeature(gpu::kFeatureSpecular)),
@@ -15,11 +15,6 @@ PrimaryStage::PrimaryStage(const Device& device, const SceneGpu& scene, uint32_t
 {
 }
 
-namespace
-{
-float lengthOf(gpu::vec3 v) { return std::hypot(v.x, v.y, v.z); }
-} // namespace
-
 PrimaryStage::Output PrimaryStage::record(Recorder& rec, const RayStage& rays, const Input& in) const
 {
     const auto scope = rec.scope("primary");
@@ -30,7 +25,7 @@ PrimaryStage::Output PrimaryStage::record(Recorder& rec, const RayStage& rays, c
     const RayQueue* queue = &queue_;
     const RayQueue* next = &next_queue_;
     // The frames of a standing picture share out its pixels: each shows its own part, so that textures come out sharp.
-    const float pixel_width = 2 * kTextureBlur * lengthOf(in.camera.right) / float(in.camera.width) / float(in.camera.first_sample + 1);
+    const float width = kTextureBlur * pixelSide(in.camera) / float(in.camera.first_sample + 1);
     const uint32_t depth_limit = has_specular_ ? in.specular_depth : 0;
     for (uint32_t depth = 0; depth <= depth_limit; ++depth)
     {
@@ -39,8 +34,8 @@ PrimaryStage::Output PrimaryStage::record(Recorder& rec, const RayStage& rays, c
                                       .pixel_count = pixel_count,
                                       .first_sample = in.camera.first_sample,
                                       .seed = in.camera.seed,
-                                      .width = in.camera.orthographic ? pixel_width : 0,
-                                      .spread = in.camera.orthographic ? 0 : pixel_width};
+                                      .width = in.camera.orthographic ? width : 0,
+                                      .spread = in.camera.orthographic ? 0 : width};
         rays.closest(rec, *queue, hits_, traceSeed(in.camera.seed, in.camera.first_sample, depth));
         rays.reset(rec, next->size);
         rec.runIndirect(chain_, queue->size, 0, params,

@@ -32,7 +32,7 @@ void main()
         Surface s = surfaceAt(point);
         Bsdf b = bsdfAt(materialAt(s), s.front);
         float cosine = max(0.0, -dot(s.normal, point.direction));
-        vec3 specular = b.smooth_specular ? vec3(0.0) : glossyReflectance(b, cosine) + belowColor(b, cosine) * b.transmission;
+        vec3 specular = b.smooth_specular ? vec3(0.0) : specularReflectance(b, cosine);
         vec3 reflectance = params.glossy != 0u ? specular : specular + diffuseReflectance(b, cosine);
         float share = luminance(specular) / max(luminance(reflectance), 1e-20);
         if (params.glossy == 0u || !b.smooth_specular) // else it sends no ray

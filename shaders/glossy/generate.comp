@@ -33,7 +33,7 @@ void main()
     vec3 wo = -point.direction * frame;
     LobeProbabilities p = lobeProbabilities(b, wo.z);
     float specular = p.reflection + p.transmission;
-    vec3 reflected = glossyReflectance(b, wo.z) + belowColor(b, wo.z) * b.transmission;
+    vec3 reflected = specularReflectance(b, wo.z);
     float survival = clamp(missing * luminance(reflected * point.throughput) / params.sure_reflectance, 0.05, 1.0);
     Sampler sampler_ = vertexSampler(path, point.depth + 1u, params.point_count, params.first_sample, params.seed);
     sampler_.dimension += kVertexDimensions - 2u; // those before are direct light's

@@ -113,6 +113,9 @@ vec3 glossyReflectance(Bsdf b, float cosine)
                  0.0, 1.0);
 }
 
+/// Of all rough specular lobes, what passes through the surface included; of a smooth one only what passes.
+vec3 specularReflectance(Bsdf b, float cosine) { return glossyReflectance(b, cosine) + belowColor(b, cosine) * b.transmission; }
+
 struct LobeProbabilities { float reflection, diffuse, transmission; };
 
 LobeProbabilities lobeProbabilities(Bsdf b, float cosine)
