@@ -107,7 +107,8 @@ Result<std::unique_ptr<SceneGpu>> SceneGpu::create(const Device& device, const p
         return *too_large;
     scene->info_ = sceneInfo(package);
     scene->info_buffer_ = device.upload("scene.info", std::span<const gpu::SceneInfo>(&scene->info_, 1));
-    scene->constants_ = {sceneFeatures(package), package.meta().texture_pages()->size()};
+    scene->features_ = sceneFeatures(package);
+    scene->constants_ = {{{"kSceneFeatures", scene->features_}, {"kUsedTexturePages", package.meta().texture_pages()->size()}}};
     scene->reflects_roughly_ = std::ranges::any_of(package.materials(), isRough);
     scene->createImages(package);
     scene->createDescriptorSet();
@@ -195,9 +196,13 @@ void SceneGpu::createDescriptorSet()
                                                .pSetLayouts = &layout};
     vulkanCheck(vkAllocateDescriptorSets(device_.handle(), &allocate, &set_));
 
-    std::vector<VkDescriptorBufferInfo> buffers{{info_buffer_.handle(), 0, VK_WHOLE_SIZE}};
+    static_assert(gpu::kSceneInfoBinding == 0 && gpu::kBvhNodesBinding == 1);
+    bound_ = {&info_buffer_};
     for (const Buffer& buffer : buffers_)
-        buffers.push_back({buffer.handle(), 0, VK_WHOLE_SIZE});
+        bound_.push_back(&buffer);
+    std::vector<VkDescriptorBufferInfo> buffers;
+    for (const Buffer* buffer : bound_)
+        buffers.push_back({buffer->handle(), 0, VK_WHOLE_SIZE});
     std::vector<VkDescriptorImageInfo> images;
     for (const Image& page : pages_)
         images.push_back({texture_sampler_, page.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL});

@@ -1,8 +1,8 @@
 #include "runtime/stages/cut.h"
 
 CutStage::CutStage(const Device& device, const SceneGpu& scene, uint32_t max_photons)
-    : summarise_(device.kernel("cut/summarise", climbConstants(device))), level_mean_(device.kernel("cut/level_mean")),
-      threshold_kernel_(device.kernel("cut/threshold")), coarse_(device.kernel("cut/coarse", climbConstants(device))),
+    : summarise_(device.kernel("cut/summarise", {climbConstant(device)})), level_mean_(device.kernel("cut/level_mean")),
+      threshold_kernel_(device.kernel("cut/threshold")), coarse_(device.kernel("cut/coarse", {climbConstant(device)})),
       select_(device.kernel("cut/select")), refine_(device.kernel("cut/refine")),
       collect_(device.kernel("cut/collect")), reorder_(device.kernel("cut/reorder")),
       finest_(device.kernel("cut/finest")), probe_(device.kernel("cut/probe")),
@@ -44,7 +44,7 @@ CutStage::Output CutStage::record(Recorder& rec, const RayStage& rays, const Pho
                           .fewest = in.fewest,
                           .most_nodes = gpu::kCutProbeCapacity / std::max(in.probes, 1u)};
     rec.clear(arrivals_);
-    rec.runIndirect(summarise_, map.size, 0, NoParams{},
+    rec.runIndirect(summarise_, map.size, NoParams{},
                     {{"Size", map.size},
                      {"TreeNodes", tree_nodes},
                      {"Photons", map.photons},
@@ -62,7 +62,7 @@ CutStage::Output CutStage::record(Recorder& rec, const RayStage& rays, const Pho
             {{"Size", map.size}, {"Partials", partials_}, {"Threshold", threshold_}, {"Ids", id_count_}});
     rec.clear(arrivals_);
     rec.clear(divided_);
-    rec.runIndirect(coarse_, map.size, 0, params,
+    rec.runIndirect(coarse_, map.size, params,
                     {{"Size", map.size},
                      {"TreeNodes", tree_nodes},
                      {"LeafParents", leaf_parents},
@@ -77,7 +77,7 @@ CutStage::Output CutStage::record(Recorder& rec, const RayStage& rays, const Pho
     const Buffer* next = &next_work_;
     const Buffer* next_size = &next_work_size_;
     rec.clear(*work_size);
-    rec.runIndirect(select_, id_count_, 0, NoParams{},
+    rec.runIndirect(select_, id_count_, NoParams{},
                     {{"Size", map.size},
                      {"Ids", id_count_},
                      {"LeafParents", leaf_parents},
@@ -88,7 +88,7 @@ CutStage::Output CutStage::record(Recorder& rec, const RayStage& rays, const Pho
     rays.close(rec, *work_size);
     rec.clear(members_);
     if (in.mode == CutMode::kLeaves)
-        rec.runIndirect(finest_, *work_size, 0, params,
+        rec.runIndirect(finest_, *work_size, params,
                         {{"Size", map.size},
                          {"TreeNodes", tree_nodes},
                          {"Photons", map.photons},
@@ -103,7 +103,7 @@ CutStage::Output CutStage::record(Recorder& rec, const RayStage& rays, const Pho
     {
         params.last = round == in.iterations;
         rec.clear(*next_size);
-        rec.runIndirect(refine_, *work_size, 0, params,
+        rec.runIndirect(refine_, *work_size, params,
                         {{"Size", map.size},
                          {"TreeNodes", tree_nodes},
                          {"Photons", map.photons},
@@ -119,12 +119,12 @@ CutStage::Output CutStage::record(Recorder& rec, const RayStage& rays, const Pho
         std::swap(work_size, next_size);
     }
     compaction_.record(rec, members_, ids_, size_, id_count_);
-    rec.runIndirect(collect_, size_, 0, NoParams{},
+    rec.runIndirect(collect_, size_, NoParams{},
                     {{"Size", size_}, {"Ids", ids_}, {"Finals", finals_}, {"Spheres", spheres_}});
     tree_.record(rec, spheres_, size_);
-    rec.runIndirect(reorder_, size_, 0, NoParams{},
+    rec.runIndirect(reorder_, size_, NoParams{},
                     {{"Size", size_}, {"Ids", ids_}, {"Order", tree_.order()}, {"Finals", finals_}, {"Nodes", nodes_}});
-    rec.runIndirect(represent_, size_, 0, gpu::RepresentParams{.seed = in.seed},
+    rec.runIndirect(represent_, size_, gpu::RepresentParams{.seed = in.seed},
                     {{"CutSize", size_},
                      {"Ids", ids_},
                      {"Order", tree_.order()},
@@ -142,9 +142,9 @@ void CutStage::recordProbes(Recorder& rec, const RayStage& rays, const Input& in
 {
     const gpu::ProbeParams params{.ray_count = in.probes, .seed = in.seed};
     rays.reset(rec, probes_.size); // an empty cut starts no thread that would say so
-    rec.runIndirect(probe_, size_, 0, params,
+    rec.runIndirect(probe_, size_, params,
                     {{"Size", size_}, {"Nodes", nodes_}, {"Queue", probes_.size}, {"Rays", probes_.rays}});
     rays.closest(rec, probes_, hits_, in.seed);
-    rec.runIndirect(cover_, size_, 0, params,
+    rec.runIndirect(cover_, size_, params,
                     {{"Size", size_}, {"Rays", probes_.rays}, {"Hits", hits_}, {"Nodes", nodes_}});
 }

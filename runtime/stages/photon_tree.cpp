@@ -15,10 +15,10 @@ PhotonTreeStage::Output PhotonTreeStage::record(Recorder& rec, const RayStage& r
 {
     rays.resize(rec, slot_count_, in.slot_count);
     compaction_.record(rec, in.flags, slots_, size_, slot_count_);
-    rec.runIndirect(collect_, size_, 0, NoParams{},
+    rec.runIndirect(collect_, size_, NoParams{},
                     {{"Size", size_}, {"Slots", slots_}, {"Photons", in.photons}, {"Spheres", spheres_}});
     tree_.record(rec, spheres_, size_);
-    rec.runIndirect(reorder_, size_, 0, NoParams{},
+    rec.runIndirect(reorder_, size_, NoParams{},
                     {{"Size", size_}, {"Slots", slots_}, {"Order", tree_.order()}, {"Photons", in.photons}, {"Sorted", sorted_}});
     return output();
 }

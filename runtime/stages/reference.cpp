@@ -70,7 +70,7 @@ const Buffer& ReferenceStage::record(Recorder& rec, const RayStage& rays, const 
         rays.reset(rec, shadow_size_);
         {
             const auto shade = rec.scope("reference.shade");
-            rec.runIndirect(shade_, queue->size, 0, params,
+            rec.runIndirect(shade_, queue->size, params,
                             {{"Queue", queue->size},
                              {"Rays", queue->rays},
                              {"Hits", hits_},

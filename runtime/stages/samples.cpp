@@ -90,7 +90,7 @@ SamplesStage::SamplesStage(const Device& device, const SceneGpu& scene, uint32_t
 void SamplesStage::recordKept(Recorder& rec, const gpu::ClusterParams& params) const
 {
     rec.copy(size_, old_size_, sizeof(gpu::QueueSize));
-    rec.runIndirect(recall_, old_size_, 0, NoParams{},
+    rec.runIndirect(recall_, old_size_, NoParams{},
                     {{"Size", old_size_},
                      {"Samples", samples_},
                      {"Tenures", tenures_},
@@ -119,7 +119,7 @@ void SamplesStage::recordKept(Recorder& rec, const gpu::ClusterParams& params) c
     rec.run(mask_, point_count_, params,
             {{"Points", points_}, {"Flags", occupied_flags_}, {"Claims", claims_}, {"Sums", sums_}, {"Rest", rest_}});
     sample_compaction_.record(rec, occupied_flags_, kept_, kept_size_, old_size_);
-    rec.runIndirect(keep_, kept_size_, 0, NoParams{},
+    rec.runIndirect(keep_, kept_size_, NoParams{},
                     {{"KeptSize", kept_size_},
                      {"Kept", kept_},
                      {"Sums", sums_},
@@ -157,7 +157,7 @@ void SamplesStage::recordSeeds(Recorder& rec, const RayStage& rays, const Input&
                  {"KeptSize", kept_size_}});
     rays.resize(rec, point_size_, point_count_);
     seed_compaction_.record(rec, seed_flags_, seeds_, cluster_size_, point_size_);
-    rec.runIndirect(seed_, cluster_size_, 0, NoParams{},
+    rec.runIndirect(seed_, cluster_size_, NoParams{},
                     {{"Size", cluster_size_},
                      {"Seeds", seeds_},
                      {"Points", points},
@@ -188,7 +188,7 @@ void SamplesStage::recordClusters(Recorder& rec, const Input& in, const gpu::Clu
     {
         assign(rec, params, points);
         rec.runIndirect(
-            update_, cluster_size_, 0, params,
+            update_, cluster_size_, params,
             {{"Size", cluster_size_}, {"Sums", sums_}, {"Clusters", clusters_}, {"Spheres", cluster_spheres_}});
         tree_.refit(rec, cluster_spheres_, cluster_size_);
     }
@@ -227,10 +227,10 @@ SamplesStage::Output SamplesStage::record(Recorder& rec, const RayStage& rays, c
     recordClusters(rec, in, params, points);
     rec.run(snap_, point_count_, params, {{"Owners", owners_}, {"Sums", sums_}});
     rec.run(measure_, point_count_, params, {{"Owners", owners_}, {"Points", points_}, {"Sums", sums_}});
-    rec.runIndirect(occupied_kernel_, cluster_size_, 0, NoParams{},
+    rec.runIndirect(occupied_kernel_, cluster_size_, NoParams{},
                     {{"Size", cluster_size_}, {"Sums", sums_}, {"Flags", occupied_flags_}});
     sample_compaction_.record(rec, occupied_flags_, occupied_, new_size_, cluster_size_);
-    rec.runIndirect(place_, new_size_, 0, params,
+    rec.runIndirect(place_, new_size_, params,
                     {{"NewSize", new_size_},
                      {"Occupied", occupied_},
                      {"Sums", sums_},

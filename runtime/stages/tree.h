@@ -7,8 +7,8 @@
 
 #include <array>
 
-/// Specialization constants of kernels that climb a tree (lib/climb.glsl).
-std::array<uint32_t, 1> climbConstants(const Device& device);
+/// Of kernels that climb a tree (lib/climb.glsl).
+Constant climbConstant(const Device& device);
 
 class Tree
 {

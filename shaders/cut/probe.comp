@@ -22,7 +22,7 @@ void main()
     if (i == 0u)
     {
         uint count = size.count * ray_count;
-        queue = QueueSize(uvec3((count + kRaysGroupSize - 1u) / kRaysGroupSize, 1u, 1u), count);
+        queue = queueSize(count);
     }
     if (i >= size.count)
         return;

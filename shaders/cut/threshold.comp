@@ -23,5 +23,5 @@ void main()
     }
     threshold = CutThreshold(sum / float(max(count, 1u)), 0u);
     uint id_count = size.count > 0u ? 2u * size.count - 1u : 0u;
-    ids = QueueSize(uvec3((id_count + kCutGroupSize - 1u) / kCutGroupSize, 1u, 1u), id_count);
+    ids = queueSize(id_count);
 }

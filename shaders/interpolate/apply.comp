@@ -10,7 +10,7 @@
 // Indirect diffuse light of every pixel from the samples whose support holds its shading point. One thread per run of
 // kRun neighbouring pixels: they share one search, which finds what any of them needs, and what it loads.
 
-layout(constant_id = 0) const uint kRun = 1u;
+layout(constant_id = 3) const uint kRun = 1u;
 
 layout(local_size_x = kRaysGroupSize) in;
 layout(push_constant, scalar) uniform Params { InterpolateParams params; };

@@ -21,7 +21,7 @@ TreeData GiTest::contents(const Tree& tree, uint32_t count)
 
 Buffer GiTest::sizeBuffer(uint32_t count)
 {
-    return upload<gpu::QueueSize>("test.size", {{.groups = {(count + 63) / 64, 1, 1}, .count = count}});
+    return upload<gpu::QueueSize>("test.size", {gpu::queueSize(count)});
 }
 
 std::unique_ptr<PhotonMap> GiTest::mapOf(const SceneGpu& scene, const std::vector<gpu::Photon>& photons)

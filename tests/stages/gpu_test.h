@@ -23,6 +23,9 @@ protected:
 
     static const Device& device();
 
+    /// Expects the dispatches of every row to cover the count, and no group more.
+    static void expectGroups(const gpu::QueueSize& size);
+
     /// A package's scene on the device. Aborts where there is none: that is the test's mistake.
     std::unique_ptr<SceneGpu> load(const std::filesystem::path& package);
 
