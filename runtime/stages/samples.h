@@ -1,15 +1,9 @@
 // Irradiance samples: adaptive seeding over a quadtree of the picture (Algorithm 1), k-means clustering (Algorithm 2).
 #pragma once
+#include "runtime/choices.h"
 #include "runtime/stages/rays.h"
 #include "runtime/stages/tree.h"
 #include "shaders/samples/samples.h"
-
-enum class SamplesMode : uint32_t
-{
-    kUniform, // seeds follow the number of shading points
-    kSeeded,  // seeds follow geometric variation
-    kKmeans,  // the same, then moved by k-means
-};
 
 class SamplesStage
 {

@@ -1,6 +1,7 @@
 // The illumination cut through the photon tree. Shared by runtime/stages/cut.cpp, lib/cut.glsl and shaders/**.
 #ifndef SHADERS_CUT_H
 #define SHADERS_CUT_H
+#include "shaders/lib/choice.h"
 #include "shaders/photons/photons.h"
 #include "shaders/tree/tree.h"
 
@@ -40,10 +41,12 @@ struct PartialMean
 };
 GPU_SIZE(PartialMean, 8);
 
-GPU_CONST uint kCutKnn = 0u;     // no cut: density estimation at every gather hit
-GPU_CONST uint kCutNearest = 1u; // the refined cut, read at its nearest node
-GPU_CONST uint kCutLeaves = 2u;  // the finest cut: nodes of a few photons at most
-GPU_CONST uint kCutRefined = 3u; // Algorithm 3
+#define GPU_CUT_MODES(X) \
+    X(kCutKnn, 0u, "knn")         /* no cut: density estimation at every gather hit */ \
+    X(kCutNearest, 1u, "nearest") /* the refined cut, read at its nearest node */ \
+    X(kCutLeaves, 2u, "leaves")   /* the finest cut: nodes of a few photons at most */ \
+    X(kCutRefined, 3u, "refined") /* Algorithm 3 */
+GPU_CUT_MODES(GPU_CHOICE_CONSTANT)
 
 GPU_CONST uint kCutGroupSize = 64u;
 GPU_CONST uint kPartialMeans = 64u;   // groups that sum E~

@@ -3,7 +3,6 @@
 #include "runtime/renderer.h"
 #include "shaders/lib/terms.h"
 
-#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -115,14 +114,11 @@ Status benchLookup(const LookupBenchOptions& options)
         return opened.error();
     if (const Status status = Renderer::checkSize(*opened->device, options.width, options.height); !status)
         return status;
-    constexpr std::array<std::pair<CutMode, std::string_view>, 4> kModes{{{CutMode::kKnn, "knn"},
-                                                                          {CutMode::kNearest, "nearest"},
-                                                                          {CutMode::kLeaves, "leaves"},
-                                                                          {CutMode::kRefined, "refined"}}};
+    static_assert(kCutModes.front().value == gpu::kCutKnn, "the others are compared with it");
     std::vector<ModeResult> results;
-    for (const auto& [mode, name] : kModes)
+    for (const auto& [name, mode] : kCutModes)
     {
-        results.push_back(measure(*opened, options, mode, name));
+        results.push_back(measure(*opened, options, CutMode(mode), name));
         if (results.back().rays == 0)
             return Error{ExitCode::kInvalid, "no gather ray was traced: the camera sees no diffuse surface; choose another with --camera"};
         if (!compare(results.back(), results.front().samples))
