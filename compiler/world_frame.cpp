@@ -17,9 +17,12 @@ constexpr int kSmallest = -10;
 constexpr int kLargest = 20;
 constexpr size_t kMostSamples = 1u << 18;
 
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
 struct Box
 {
-    Vec3d low, high;
+    Vec3d low{kInfinity, kInfinity, kInfinity};
+    Vec3d high{-kInfinity, -kInfinity, -kInfinity};
 
     void grow(const Vec3d& p)
     {
@@ -28,7 +31,8 @@ struct Box
     }
     Vec3d nearest(const Vec3d& p) const
     {
-        return {std::clamp(p.x, low.x, high.x), std::clamp(p.y, low.y, high.y), std::clamp(p.z, low.z, high.z)};
+        const auto within = [](double v, double least, double most) { return std::max(least, std::min(v, most)); };
+        return {within(p.x, low.x, high.x), within(p.y, low.y, high.y), within(p.z, low.z, high.z)};
     }
 };
 
@@ -83,16 +87,19 @@ std::vector<Vec3d> sampleTriangles(const ImportedScene& imported)
     return samples;
 }
 
-/// A box about the primitive in world space.
-Box boxOf(const MeshPrimitive& primitive, const Transform& to_world)
+Box boxOf(const MeshPrimitive& primitive)
 {
-    const Vec3d first = toDouble(primitive.positions.front());
-    Box local{first, first};
+    Box box;
     for (const gpu::vec3 p : primitive.positions)
-        local.grow(toDouble(p));
-    const Vec3d start = to_world.point(local.low);
-    Box box{start, start};
-    for (unsigned corner = 1; corner < 8; ++corner)
+        box.grow(toDouble(p));
+    return box;
+}
+
+/// A box about `local` in world space.
+Box transformed(const Box& local, const Transform& to_world)
+{
+    Box box;
+    for (unsigned corner = 0; corner < 8; ++corner)
         box.grow(to_world.point({(corner & 1) != 0 ? local.high.x : local.low.x,
                                  (corner & 2) != 0 ? local.high.y : local.low.y,
                                  (corner & 4) != 0 ? local.high.z : local.low.z}));
@@ -102,14 +109,18 @@ Box boxOf(const MeshPrimitive& primitive, const Transform& to_world)
 /// The place in the scene's objects next to `from`.
 Vec3d nearestPlace(const ImportedScene& imported, const Vec3d& from)
 {
+    std::vector<Box> local;
+    for (const MeshPrimitive& primitive : imported.primitives)
+        local.push_back(boxOf(primitive));
     Vec3d best = from;
-    double least = std::numeric_limits<double>::infinity();
+    double least = kInfinity;
     forEachPrimitive(imported,
                      [&](const MeshPrimitive& primitive, const Transform& to_world)
                      {
                          if (primitive.triangles.empty())
                              return;
-                         const Vec3d place = boxOf(primitive, to_world).nearest(from);
+                         const Box& box = local[size_t(&primitive - imported.primitives.data())];
+                         const Vec3d place = transformed(box, to_world).nearest(from);
                          if (const double distance = length(place - from); distance < least)
                          {
                              least = distance;
