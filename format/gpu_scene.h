@@ -1,5 +1,6 @@
 // The scene as it lies in a package and as shaders read it: one definition for compiler, player and GLSL.
-// Scalar layout. World space is glTF's: right-handed, +Y up, metres. Radiometry is SI, RGB linear Rec. 709.
+// Scalar layout. World space is glTF's: right-handed, +Y up, in units of length of the package
+// (META's unit, 1 m nearly always), which stand for metres throughout. Radiometry is SI, RGB linear Rec. 709.
 #ifndef FORMAT_GPU_SCENE_H
 #define FORMAT_GPU_SCENE_H
 #include "format/gpu_types.h"
