@@ -16,12 +16,14 @@ namespace
 struct Source
 {
     std::vector<std::array<gpu::vec3, 3>> corners; // by triangle
+    std::span<const uint32_t> flags;               // kTriangle*, likewise
     float padding = 0;                             // metres, around every leaf
 };
 
-Source gatherSource(const WorldMesh& mesh)
+Source gatherSource(const WorldMesh& mesh, std::span<const uint32_t> triangle_flags)
 {
     Source source;
+    source.flags = triangle_flags;
     float largest = 0;
     for (const gpu::uvec3& v : mesh.triangles)
     {
@@ -74,9 +76,16 @@ void* createLeaf(RTCThreadLocalAllocator allocator, const RTCBuildPrimitive* pri
 void splitPrimitive(const RTCBuildPrimitive* primitive, unsigned dimension, float position, RTCBounds* left,
                     RTCBounds* right, void* user)
 {
+    const Source& source = *static_cast<const Source*>(user);
+    if (source.flags[primitive->primID] != 0) // stored once, so that shadow rays count it once; no part means no split
+    {
+        *left = toBounds(toBox(*primitive));
+        *right = toBounds(Box());
+        return;
+    }
     Box left_box;
     Box right_box;
-    splitTriangleBox(static_cast<const Source*>(user)->corners[primitive->primID], toBox(*primitive), dimension,
+    splitTriangleBox(source.corners[primitive->primID], toBox(*primitive), dimension,
                      position, left_box, right_box);
     *left = toBounds(left_box);
     *right = toBounds(right_box);
@@ -139,7 +148,7 @@ Bvh buildBvh(const WorldMesh& mesh, std::span<const uint32_t> triangle_flags)
     const Device device(rtcNewDevice(nullptr));
     check(device, "Embree error {}", int(rtcGetDeviceError(nullptr)));
     const EmbreeBvh memory(rtcNewBVH(device.get()));
-    BinaryNode* root = buildBinary(memory.get(), gatherSource(mesh));
+    BinaryNode* root = buildBinary(memory.get(), gatherSource(mesh, triangle_flags));
     check(root, "Embree error {}", int(rtcGetDeviceError(device.get())));
 
     Bvh bvh = collapse(*root, mesh, triangle_flags);

@@ -35,7 +35,7 @@ GPU_SIZE(BvhNode, 112);
 GPU_CONST uint kTriangleAlpha = 1u; // BvhTriangle.flags: alpha mask or blend: traversal must look at its coverage
 GPU_CONST uint kTriangleThin = 2u;  // thin-walled smooth transmission: shadow rays pass, tinted
 
-struct BvhTriangle // in leaf order; spatial splits may store one triangle several times
+struct BvhTriangle // in leaf order; spatial splits may store one triangle several times, but only once one with flags
 {
     vec3 v0; // metres, world space, counter-clockwise seen from the front
     uint triangle; // index into Triangles

@@ -147,7 +147,8 @@ Emission emitTriangle(Light light, float aim, bool aimed, uint target, vec2 u, v
     float pdf = (1.0 - aim) * cosine * kInvPi * (two_sided ? 0.5 : 1.0);
     if (aim > 0.0)
         pdf += aim * aimedDirectionPdf(position, direction);
-    return Emission(offsetOrigin(position, normal), direction, emission * (cosine * area / (light.pmf * pdf)));
+    position += 2.0 * (planeError(light.p0, light.p1, light.p2, vec3(0.0)) + kRounding * maxComponent(abs(position))) * normal;
+    return Emission(position, direction, emission * (cosine * area / (light.pmf * pdf)));
 }
 
 Emission emitEnvironment(Light light, float aim, bool aimed, uint target, vec2 u, uvec2 pick, vec2 v)

@@ -52,7 +52,7 @@ void store(uint path, PathState state, Surface s, vec3 direction)
 bool scatter(uint path, uint event, Hit hit, inout PathState state, inout Ray ray)
 {
     vec3 direction = ray.direction;
-    Surface s = surfaceAt(hit.slot, hit.barycentrics, direction);
+    Surface s = surfaceAt(ray, hit);
     SurfaceMaterial m = materialAt(s);
     if ((m.flags & kMaterialUnlit) != 0u)
         return false;
@@ -72,7 +72,7 @@ bool scatter(uint path, uint event, Hit hit, inout PathState state, inout Ray ra
     vec3 wi = frame * next.wi;
     bool delta = next.pdf == 0.0;
     // A caustic path ends where light scatters; a smooth layer over a diffuse base may still reflect it on.
-    if (next.weight == vec3(0.0) || !sidesAgree(s, wi, next.wi.z) || (params.caustic != 0u && !delta) ||
+    if (next.weight == vec3(0.0) || !geometryAgrees(s, wi, next.wi.z) || (params.caustic != 0u && !delta) ||
         state.stored >= params.bounce_limit)
         return false;
     bool entered = next.wi.z < 0.0 && !next.passed;
@@ -103,7 +103,7 @@ void main()
     uint event = 0u;
     for (bool goes_on = true; goes_on && event < params.event_limit; ++event)
     {
-        Hit hit = closestHit(ray.origin, ray.direction, 0.0, ray.t_max, hash(hash(params.seed, event), params.first_path + path));
+        Hit hit = closestHit(ray.origin, ray.direction, kRayStart, ray.t_max, hash(hash(params.seed, event), params.first_path + path));
         goes_on = hit.slot != kNone;
         if (goes_on)
             goes_on = scatter(path, event, hit, state, ray);

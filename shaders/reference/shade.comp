@@ -143,7 +143,7 @@ void main()
         return;
     }
 
-    Surface s = surfaceAt(hit.slot, hit.barycentrics, direction);
+    Surface s = surfaceAt(rays[i], hit);
     SurfaceMaterial m = materialAt(s);
     state.throughput *= mediumTransmittance(crossedMedium(state.medium, s, m), hit.t);
     state.travelled += hit.t;
