@@ -83,23 +83,31 @@ const Place kRayStart = Place(0.0, 0xffffffffu);
 
 bool isBefore(Place a, Place b) { return a.t < b.t || (a.t == b.t && a.rank < b.rank); }
 
-/// Watertight along shared edges and at shared corners (Woop et al. 2013, "Watertight Ray/Triangle Intersection"): a
-/// corner has one projection for all its triangles, and the sign of an edge function is that of the exact difference, or
-/// 0, which counts as inside. Contraction to fused multiply-adds would break that, hence `precise`; of the distance it would
-/// make one that differs from kernel to kernel.
+/// Weights of a triangle's corners where the ray passes it, times some number: of v1, v2, v0. Watertight along shared edges
+/// and at shared corners (Woop et al. 2013, "Watertight Ray/Triangle Intersection"): a corner has one projection for all its
+/// triangles, and each sign is that of the exact difference, or 0. Contraction to fused multiply-adds would break that, hence
+/// `precise`.
+/// @param a b c corners relative to the ray's origin
+vec3 edgeFunctions(TriangleRay ray, vec3 a, vec3 b, vec3 c)
+{
+    vec3 px = vec3(a.x, b.x, c.x), py = vec3(a.y, b.y, c.y), pz = vec3(a.z, b.z, c.z);
+    precise vec3 x = fma(vec3(ray.x.x), px, fma(vec3(ray.x.y), py, ray.x.z * pz)); // of the corners' projections
+    precise vec3 y = fma(vec3(ray.y.x), px, fma(vec3(ray.y.y), py, ray.y.z * pz));
+    precise float u = x.x * y.z - x.z * y.x;
+    precise float v = x.y * y.x - x.x * y.y;
+    precise float w = x.z * y.y - x.y * y.z;
+    return vec3(u, v, w);
+}
+
+/// 0 counts as inside. The distance is `precise`, too: it must be one in all kernels.
 /// @return whether it is met between two places (both exclusive); then `hit` and `end` are it
 bool hitTriangle(uint slot, TriangleRay ray, Place start, inout Place end, inout Hit hit)
 {
     vec3 a = loadBvhTriangle(slot).v0 - ray.origin;
     vec3 b = loadBvhTriangle(slot).v1 - ray.origin;
     vec3 c = loadBvhTriangle(slot).v2 - ray.origin;
-    vec3 px = vec3(a.x, b.x, c.x), py = vec3(a.y, b.y, c.y), pz = vec3(a.z, b.z, c.z);
-    precise vec3 x = fma(vec3(ray.x.x), px, fma(vec3(ray.x.y), py, ray.x.z * pz)); // of the corners' projections
-    precise vec3 y = fma(vec3(ray.y.x), px, fma(vec3(ray.y.y), py, ray.y.z * pz));
-    precise float u = x.x * y.z - x.z * y.x; // weight of v1
-    precise float v = x.y * y.x - x.x * y.y; // weight of v2
-    precise float w = x.z * y.y - x.y * y.z; // weight of v0
-    if (min(u, min(v, w)) < 0.0 && max(u, max(v, w)) > 0.0)
+    vec3 uvw = edgeFunctions(ray, a, b, c);
+    if (min(uvw.x, min(uvw.y, uvw.z)) < 0.0 && max(uvw.x, max(uvw.y, uvw.z)) > 0.0)
         return false;
     precise vec3 normal = cross(a - b, c - a);
     precise float along = dot(normal, ray.direction);
@@ -107,11 +115,22 @@ bool hitTriangle(uint slot, TriangleRay ray, Place start, inout Place end, inout
     Place place = Place(t, hitRank(slot));
     if (!(isBefore(start, place) && isBefore(place, end))) // also refuses NaN: a ray in the triangle's plane
         return false;
-    float sum = u + v + w;
-    vec2 barycentrics = sum == 0.0 ? vec2(0.0) : vec2(u, v) / sum;
+    float sum = uvw.x + uvw.y + uvw.z;
+    vec2 barycentrics = sum == 0.0 ? vec2(0.0) : uvw.xy / sum;
     hit = Hit(t, slot, barycentrics);
     end = place;
     return true;
+}
+
+bool comesFirst(vec3 p, vec3 q) { return p.x != q.x ? p.x < q.x : p.y != q.y ? p.y < q.y : p.z < q.z; }
+
+/// Of the two triangles that a ray meets where it passes exactly through their common edge, whether slot's is to count: they
+/// go along it in opposite directions.
+bool ownsEdge(uint slot, TriangleRay ray)
+{
+    vec3 v0 = loadBvhTriangle(slot).v0, v1 = loadBvhTriangle(slot).v1, v2 = loadBvhTriangle(slot).v2;
+    vec3 uvw = edgeFunctions(ray, v0 - ray.origin, v1 - ray.origin, v2 - ray.origin);
+    return (uvw.x != 0.0 || comesFirst(v2, v0)) && (uvw.y != 0.0 || comesFirst(v0, v1)) && (uvw.z != 0.0 || comesFirst(v1, v2));
 }
 
 void swapIfFarther(inout float t0, inout uint c0, inout float t1, inout uint c1)

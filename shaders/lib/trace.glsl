@@ -184,9 +184,13 @@ vec3 translucentTransmittance(vec3 origin, vec3 direction, float t_max)
         }
         for (; met != 0u; met &= met - 1u)
         {
+            uint slot = first + findLSB(met);
             Hit hit;
-            if (isBetween(first + findLSB(met), triangle_ray, t_max, hit))
-                through *= layerTransmittance(hit, direction);
+            if (!isBetween(slot, triangle_ray, t_max, hit))
+                continue;
+            vec3 layer = layerTransmittance(hit, direction);
+            if (layer == vec3(0.0) || ownsEdge(slot, triangle_ray)) // two halves of a pane are one pane along their edge
+                through *= layer;
         }
         current = popNearer(t_max);
     }
