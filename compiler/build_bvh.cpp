@@ -85,8 +85,7 @@ void splitPrimitive(const RTCBuildPrimitive* primitive, unsigned dimension, floa
     }
     Box left_box;
     Box right_box;
-    splitTriangleBox(source.corners[primitive->primID], toBox(*primitive), dimension,
-                     position, left_box, right_box);
+    splitTriangleBox(source.corners[primitive->primID], toBox(*primitive), dimension, position, left_box, right_box);
     *left = toBounds(left_box);
     *right = toBounds(right_box);
 }

@@ -65,7 +65,8 @@ bool mayEndOn(const gpu::Ray& ray, const gpu::BvhTriangle& triangle, Vec normal)
         return false;
     const Vec a = exact(triangle.v0), b = exact(triangle.v1), c = exact(triangle.v2), u = b - a, v = c - a;
     const Vec origin = exact(ray.origin), direction = exact(ray.direction);
-    const auto product = [](double ui, double uk, double vi, double vk) { return std::abs(ui * vk) + std::abs(uk * vi); };
+    const auto product = [](double ui, double uk, double vi, double vk)
+    { return std::abs(ui * vk) + std::abs(uk * vi); };
     const auto largest = [&](double Vec::*axis)
     {
         return std::max({std::abs(a.*axis), std::abs(b.*axis), std::abs(c.*axis)}) + std::abs(origin.*axis) +
@@ -73,7 +74,8 @@ bool mayEndOn(const gpu::Ray& ray, const gpu::BvhTriangle& triangle, Vec normal)
     };
     const Vec products{product(u.y, u.z, v.y, v.z), product(u.z, u.x, v.z, v.x), product(u.x, u.y, v.x, v.y)};
     const Vec reach{largest(&Vec::x), largest(&Vec::y), largest(&Vec::z)};
-    const double error = 8 * kUlp * std::min(dot(products, reach) / length(normal), 64 * std::max({reach.x, reach.y, reach.z}));
+    const double error =
+        8 * kUlp * std::min(dot(products, reach) / length(normal), 64 * std::max({reach.x, reach.y, reach.z}));
     const double off = dot(normal, a - origin) - ray.t_max * dot(normal, direction);
     return std::abs(off) <= 2 * error * length(normal);
 }

@@ -352,7 +352,10 @@ std::vector<gpu::Ray> raysUp(uint32_t count)
     Random random(13);
     std::vector<gpu::Ray> rays;
     for (uint32_t i = 0; i < count; ++i)
-        rays.push_back({.origin = random.inBox({0.1f, 0.1f, -1}, {0.9f, 0.9f, 0}), .t_max = kFar, .direction = {0, 0, 1}, .path = i});
+        rays.push_back({.origin = random.inBox({0.1f, 0.1f, -1}, {0.9f, 0.9f, 0}),
+                        .t_max = kFar,
+                        .direction = {0, 0, 1},
+                        .path = i});
     return rays;
 }
 
@@ -376,7 +379,8 @@ TEST_F(Rays, MeetADecalAndThroughItsHolesTheWallInOnePlane)
                 {
                     const bool is_decal = scene.package.bvhTriangles()[hit.slot].material == decal;
                     EXPECT_NEAR(scene.package.bvhTriangles()[hit.slot].v0.z, 1, 0) << "decal first: " << decal_first;
-                    EXPECT_FALSE(is_decal && (alpha == 0 || flag == gpu::kMaterialAlphaMask)) << "decal first: " << decal_first;
+                    EXPECT_FALSE(is_decal && (alpha == 0 || flag == gpu::kMaterialAlphaMask))
+                        << "decal first: " << decal_first;
                 }
             }
 }

@@ -15,12 +15,13 @@ protected:
     {
         SceneBuilder builder;
         builder.floor(float(height), 0, builder.material(lambert(kAlbedo)));
-        builder.quad({-0.25f, float(height - gap), 0.25f}, {0.5f, 0, 0}, {0, 0, -0.5f}, builder.material(lambert(kAlbedo)));
+        builder.quad({-0.25f, float(height - gap), 0.25f}, {0.5f, 0, 0}, {0, 0, -0.5f},
+                     builder.material(lambert(kAlbedo)));
         builder.light({{"type", "point"}, {"intensity", 4 * height * height}}, {{"translation", {0, height, 0}}});
         const auto scene = load(builder.compile());
         for (const float x : {0.0f, 0.3f})
-            expectBoth(fmt::format("{} m up, shield {} mm below, {} of the height aside", height, 1000 * gap, x), *scene,
-                       viewOf({x * float(height), 0, 0}, {0.3f, 1, 0.2f}), grey(0), {.depth = 2});
+            expectBoth(fmt::format("{} m up, shield {} mm below, {} of the height aside", height, 1000 * gap, x),
+                       *scene, viewOf({x * float(height), 0, 0}, {0.3f, 1, 0.2f}), grey(0), {.depth = 2});
     }
 };
 
@@ -86,8 +87,9 @@ TEST_P(Dark, RoomsStayBlack)
     if (ground)
         builder.quad(at + gpu::vec3{-10000, 0, 10000}, {20000, 0, 0}, {0, 0, -20000}, white);
     for (const double turn : {0.3, 0.6}) // suns, from above and two sides
-        builder.light({{"type", "directional"}, {"intensity", 10}},
-                      {{"rotation", {-std::sin(turn) * 0.8, std::cos(turn) * 0.6, -std::sin(turn) * 0.6, std::cos(turn) * 0.8}}});
+        builder.light(
+            {{"type", "directional"}, {"intensity", 10}},
+            {{"rotation", {-std::sin(turn) * 0.8, std::cos(turn) * 0.6, -std::sin(turn) * 0.6, std::cos(turn) * 0.8}}});
     builder.environment({.width = 1, .height = 1, .rgb = {1, 1, 1}});
     const auto scene = load(builder.compile());
     const gpu::vec3 eye = place({-0.7f, 1.2f, 0.8f}), forward = normalize({1, -0.6f, -0.9f});
@@ -99,7 +101,8 @@ TEST_P(Dark, RoomsStayBlack)
                         .orthographic_height = 0};
     for (const Mode mode : {Mode::kReference, Mode::kDirect})
     {
-        const Picture picture = render(*scene, camera, {.reference_depth = 6}, mode == Mode::kReference ? 24 : 4, 48, 48, mode);
+        const Picture picture =
+            render(*scene, camera, {.reference_depth = 6}, mode == Mode::kReference ? 24 : 4, 48, 48, mode);
         uint32_t lit = 0;
         for (const gpu::vec3& pixel : picture.pixels)
             lit += pixel.x != 0 || pixel.y != 0 || pixel.z != 0;

@@ -15,7 +15,8 @@ protected:
     {
         SceneBuilder builder;
         builder.sphere({0, 0, 0}, 1, facets, true, builder.material(material));
-        builder.light({{"type", "directional"}, {"intensity", 4}}, {{"rotation", {0, std::sin(0.75), 0, std::cos(0.75)}}});
+        builder.light({{"type", "directional"}, {"intensity", 4}},
+                      {{"rotation", {0, std::sin(0.75), 0, std::cos(0.75)}}});
         const auto scene = load(builder.compile());
         return render(*scene, viewOf({0, 0, 0}, {0, 0.2f, 1}, 3, 2.1f), {.reference_depth = 2}, 8, 96, 96, mode);
     }
@@ -58,7 +59,8 @@ TEST_F(ShadingNormals, OnTheWrongSideMeanTheirOwn)
     for (const double degrees : {-80, -60, -30, 0, 30, 60, 80})
     {
         const double angle = degrees * kDegree;
-        expectBoth(fmt::format("{} degrees", degrees), *scene, viewOf({0, 0, 0}, {0, float(std::cos(angle)), float(std::sin(angle))}),
+        expectBoth(fmt::format("{} degrees", degrees), *scene,
+                   viewOf({0, 0, 0}, {0, float(std::cos(angle)), float(std::sin(angle))}),
                    grey(kAlbedo / kPi * 4 * std::cos(30 * kDegree)), {.depth = 2});
     }
 }
@@ -68,15 +70,17 @@ TEST_F(ShadingNormals, TiltedMirrorsReflectAllOfAWhiteSky)
 {
     SceneBuilder builder;
     const int map = builder.texture(1, 1, {191, 128, 238, 255}); // (0.5, 0, 0.866)
-    builder.floor(4, 0, builder.material({{"pbrMetallicRoughness", {{"metallicFactor", 1}, {"roughnessFactor", 0}}},
-                                          {"normalTexture", {{"index", map}}}}));
+    builder.floor(4, 0,
+                  builder.material({{"pbrMetallicRoughness", {{"metallicFactor", 1}, {"roughnessFactor", 0}}},
+                                    {"normalTexture", {{"index", map}}}}));
     builder.environment({.width = 1, .height = 1, .rgb = {1, 1, 1}});
     const auto scene = load(builder.compile());
     for (const double degrees : {-85, -60, -30, 0, 30, 60, 85})
     {
         const double angle = degrees * kDegree;
-        expectBoth(fmt::format("{} degrees", degrees), *scene, viewOf({0, 0, 0}, {float(std::sin(angle)), float(std::cos(angle)), 0}),
-                   grey(1), {.side = 8, .sample_count = 4, .depth = 3});
+        expectBoth(fmt::format("{} degrees", degrees), *scene,
+                   viewOf({0, 0, 0}, {float(std::sin(angle)), float(std::cos(angle)), 0}), grey(1),
+                   {.side = 8, .sample_count = 4, .depth = 3});
     }
 }
 } // namespace
