@@ -349,11 +349,11 @@ TEST(BuildBvh, StoresTrianglesWithFlagsOnce)
 {
     const auto stored = [](uint32_t flag)
     {
-        const WorldMesh mesh = crossingSticks(40);
+        const WorldMesh mesh = crossingSticks(2000);
         std::vector<uint32_t> flags(mesh.triangles.size(), flag);
         return buildBvh(mesh, flags).triangles.size();
     };
-    const size_t count = crossingSticks(40).triangles.size();
+    const size_t count = crossingSticks(2000).triangles.size();
     EXPECT_EQ(stored(gpu::kTriangleAlpha), count);
     EXPECT_GT(stored(0), count); // or the scene does not ask for splits
 }
