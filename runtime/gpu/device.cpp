@@ -164,9 +164,14 @@ Kernel Device::kernel(std::string_view name, std::span<const uint32_t> constants
     const auto codes = kernelCodes();
     const auto code = std::ranges::find(codes, name, &KernelCode::name);
     check(code != codes.end(), "there is no kernel '{}'", name);
-    const auto [entry, added] = kernels_.try_emplace({std::string(name), {constants.begin(), constants.end()}});
+    return kernel(*code, constants);
+}
+
+Kernel Device::kernel(const KernelCode& code, std::span<const uint32_t> constants) const
+{
+    const auto [entry, added] = kernels_.try_emplace({std::string(code.name), {constants.begin(), constants.end()}});
     if (added)
-        entry->second = createKernel(*code, constants);
+        entry->second = createKernel(code, constants);
     return entry->second;
 }
 

@@ -26,6 +26,8 @@ public:
     /// A kernel asked for again with the same constants is the same one.
     /// @param constants values of the kernel's specialization constants 0, 1, ...
     Kernel kernel(std::string_view name, std::span<const uint32_t> constants = {}) const;
+    /// The same of a kernel that is not one of kernelCodes(); of another name than any of them.
+    Kernel kernel(const KernelCode& code, std::span<const uint32_t> constants = {}) const;
 
     /// What a word of new memory holds under validation: no number as a float, far too many as a count. Without this
     /// a kernel that reads what nothing wrote is right as long as the memory happens to be zero.
