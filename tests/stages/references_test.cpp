@@ -5,6 +5,7 @@
 #include "runtime/renderer.h"
 #include "tests/stages/gpu_test.h"
 #include "tests/stages/mean_fresnel.h"
+#include "tests/stages/same_picture.h"
 #include "tests/tools/temporary_folder.h"
 #include "tools/compare/metrics.h"
 #include "tools/image/read_exr.h"
@@ -95,14 +96,6 @@ struct Pictures
     ImageF reference, ours;
     std::vector<double> variance; // of ours, per value
 };
-
-ImageF imageOf(uint32_t width, uint32_t height, const std::vector<gpu::vec3>& pixels)
-{
-    ImageF image{.width = width, .height = height, .rgb = {}};
-    for (const gpu::vec3& p : pixels)
-        image.rgb.insert(image.rgb.end(), {p.x, p.y, p.z});
-    return image;
-}
 
 Pictures renderBoth(const Device& device, const SceneGpu& scene, const Camera& camera, const Comparison& c)
 {
