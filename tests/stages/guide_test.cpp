@@ -86,6 +86,23 @@ protected:
     }
     std::vector<gpu::Photon> emit(uint32_t round) { return stored(trace(round)); }
 
+    /// Of each cell, by what was learned.
+    std::vector<double> probabilities() const
+    {
+        const auto distribution = contents<gpu::GuideDistribution>(guide_->distribution(), 1)[0];
+        EXPECT_EQ(distribution.groups[gpu::kGuideGroups - 1], 1);
+        std::vector<double> result;
+        for (uint32_t i = 0; i < gpu::kGuideTotal; ++i)
+        {
+            const uint32_t group = i / gpu::kGuideCells;
+            const double of_group =
+                double(distribution.groups[group]) - (group > 0 ? distribution.groups[group - 1] : 0);
+            result.push_back(of_group * (double(distribution.cells[i]) -
+                                         (i % gpu::kGuideCells > 0 ? distribution.cells[i - 1] : 0)));
+        }
+        return result;
+    }
+
     static bool isFloorOfRoom(const gpu::Photon& p)
     {
         return std::abs(p.position.y) < 1e-3 && std::abs(p.position.x) < 2 && std::abs(p.position.z) < 2;
@@ -156,21 +173,6 @@ TEST_F(Guides, AreNoHelpWithOneLamp)
 TEST_F(Guides, LearnHowMuchIsWantedOfEachCellsPhotons)
 {
     look();
-    const auto probabilities = [&]
-    {
-        const auto distribution = contents<gpu::GuideDistribution>(guide_->distribution(), 1)[0];
-        EXPECT_EQ(distribution.groups[gpu::kGuideGroups - 1], 1);
-        std::vector<double> result;
-        for (uint32_t i = 0; i < gpu::kGuideTotal; ++i)
-        {
-            const uint32_t group = i / gpu::kGuideCells;
-            const double of_group =
-                double(distribution.groups[group]) - (group > 0 ? distribution.groups[group - 1] : 0);
-            result.push_back(of_group * (double(distribution.cells[i]) -
-                                         (i % gpu::kGuideCells > 0 ? distribution.cells[i - 1] : 0)));
-        }
-        return result;
-    };
     const std::vector<double> start = probabilities();
     const auto wanted = contents<uint32_t>(guide_->wanted(), gpu::kGuidePlaces);
     const PhotonStage::Output out = trace(0);
@@ -207,5 +209,25 @@ TEST_F(Guides, LearnHowMuchIsWantedOfEachCellsPhotons)
     for (size_t i = 0; i < learned.size(); ++i)
         EXPECT_NEAR(learned[i], gpu::kGuideUnguided * start[i] + (1 - gpu::kGuideUnguided) * scores[i] / total, 1e-6)
             << "cell " << i;
+}
+
+/// As well spread as the sequence that chooses the cells: any interval of its first coordinate gets its part of 2^k points
+/// up to one at either end. (Independent numbers are for the test of pickCell by Pearson's statistic.)
+TEST_F(Guides, LeaveByTheLearnedDistribution)
+{
+    look();
+    (void)trace(0);
+    const std::vector<double> learned = probabilities();
+    constexpr uint32_t kPowerOfTwo = 16384;
+    static_assert(kPowerOfTwo <= kPaths);
+    const Buffer starts = device().array<gpu::PhotonStart>("test.starts", kPowerOfTwo);
+    submit(*scene_,
+           [&](Recorder& rec) { guide_->emit(rec, starts, {.path_count = kPowerOfTwo, .first_path = 0, .seed = 9, .aim = 0}); });
+    std::vector<double> counts(learned.size());
+    for (const uint32_t cell : contents<uint32_t>(guide_->cells(), kPowerOfTwo))
+        ++counts.at(cell);
+    for (size_t i = 0; i < learned.size(); ++i)
+        EXPECT_NEAR(counts[i], learned[i] * kPowerOfTwo, 2) << "cell " << i;
+    EXPECT_GE(std::ranges::max(learned) * kPowerOfTwo, 20) << "too even for a test";
 }
 } // namespace
