@@ -49,7 +49,8 @@ double visibleNormals(double alpha, Double3 wo, Double3 h)
     return masking * dot(wo, h) * distribution / wo.z;
 }
 
-/// Density with which the BSDF chooses wi: lobes in proportion to what they reflect for white light at wo, base colour 1.
+/// Density with which the BSDF chooses wi: lobes in proportion to what they reflect for white light at wo, base
+/// colour 1.
 double density(const Lobes& m, Double3 wo, Double3 wi)
 {
     const double fresnel = reflectance(m, wo.z);
@@ -74,7 +75,8 @@ double density(const Lobes& m, Double3 wo, Double3 wi)
     const double cos_o = dot(wo, h), cos_i = dot(wi, h);
     if (cos_o <= 0 || cos_i >= 0)
         return 0;
-    return passed * visibleNormals(m.alpha(), wo, h) * eta * eta * std::abs(cos_i) / square(cos_o + eta * cos_i); // eq. 17
+    return passed * visibleNormals(m.alpha(), wo, h) * eta * eta * std::abs(cos_i) /
+           square(cos_o + eta * cos_i); // eq. 17
 }
 
 Double3 viewer(double degrees)
@@ -131,7 +133,8 @@ protected:
     ChiSquared test(const Lobes& m, const Lobes& claimed, double degrees)
     {
         const gpu::vec3 wo = single(viewer(degrees));
-        return against(drawn(m, wo, false), [&](Double3 wi) { return density(claimed, wo, wi); }, gridFor(m, degrees));
+        return against(
+            drawn(m, wo, false), [&](Double3 wi) { return density(claimed, wo, wi); }, gridFor(m, degrees));
     }
 
     /// Adds the test of the material's own density, which must also be the one that the shader states.
@@ -139,7 +142,8 @@ protected:
     {
         const gpu::vec3 wo = single(viewer(degrees));
         const auto draws = drawn(m, wo, false);
-        tests.add(what, against(draws, [&](Double3 wi) { return density(m, wo, wi); }, gridFor(m, degrees)));
+        tests.add(what, against(
+                            draws, [&](Double3 wi) { return density(m, wo, wi); }, gridFor(m, degrees)));
         double worst = 0; // part of what rounding may do
         for (const gpu::DirectionDraw& d : std::span(draws).first(kDraws / 20))
             if (d.pdf > 0)
@@ -150,8 +154,8 @@ protected:
         EXPECT_LE(worst, 1) << what;
     }
 
-    static ChiSquared against(const std::vector<gpu::DirectionDraw>& draws, const std::function<double(Double3)>& density,
-                              const Grid& grid)
+    static ChiSquared against(const std::vector<gpu::DirectionDraw>& draws,
+                              const std::function<double(Double3)>& density, const Grid& grid)
     {
         std::vector<double> counts(grid.absorbedCell() + 1);
         for (const gpu::DirectionDraw& d : draws)
@@ -159,15 +163,16 @@ protected:
         return chiSquared(counts, times(kDraws, grid.integrate(density)));
     }
 
-    /// Some roundings of results, and what some roundings of the directions change. D has 1 - h.z^2 (1 - alpha^2) in its
-    /// denominator twice: as small as alpha^2, it errs by some units of the last place of 1.
+    /// Some roundings of results, and what some roundings of the directions change. D has 1 - h.z^2 (1 - alpha^2) in
+    /// its denominator twice: as small as alpha^2, it errs by some units of the last place of 1.
     static double rounding(const Lobes& m, Double3 wo, Double3 wi)
     {
         constexpr double kUnit = 0x1p-24;
         const double exact = density(m, wo, wi);
         double sum = kUnit * (64 + 16 / square(m.alpha()));
         for (const Double3 step : {Double3(kUnit, 0, 0), {0, kUnit, 0}, {0, 0, kUnit}})
-            sum += 16 * (std::abs(density(m, wo, wi + step) / exact - 1) + std::abs(density(m, wo + step, wi) / exact - 1));
+            sum += 16 *
+                   (std::abs(density(m, wo, wi + step) / exact - 1) + std::abs(density(m, wo + step, wi) / exact - 1));
         return sum;
     }
 
@@ -227,10 +232,12 @@ TEST_F(BsdfSampling, ReflectionIsThatOfVisibleNormals)
 TEST_F(BsdfSampling, LobesAreChosenByWhatTheyReflect)
 {
     ChiSquaredTests tests;
-    for (const Lobes& m : {Lobes{.roughness = 0.3}, {.metallic = 0.4, .roughness = 0.5}, {.roughness = 0.4, .transmission = 0.5}})
+    for (const Lobes& m :
+         {Lobes{.roughness = 0.3}, {.metallic = 0.4, .roughness = 0.5}, {.roughness = 0.4, .transmission = 0.5}})
         for (const double degrees : {30.0, 85.0})
         {
-            const std::string what = fmt::format("metallic {}, transmission {}, {} degrees", m.metallic, m.transmission, degrees);
+            const std::string what =
+                fmt::format("metallic {}, transmission {}, {} degrees", m.metallic, m.transmission, degrees);
             add(tests, what, m, degrees);
         }
     tests.expectAll();
@@ -280,7 +287,8 @@ TEST_F(Sampling, GatheringRaysAreCosineDistributedAboutAnyNormal)
 {
     ChiSquaredTests tests;
     uint32_t seed = 0;
-    for (const Double3 normal : {Double3(0, 0, 1), {0, 0, -1}, {1e-4, -1e-4, -1}, {0.6, -0.48, 0.64}, {-0.1, 0.99, -0.1}})
+    for (const Double3 normal :
+         {Double3(0, 0, 1), {0, 0, -1}, {1e-4, -1e-4, -1}, {0.6, -0.48, 0.64}, {-0.1, 0.99, -0.1}})
     {
         const gpu::vec3 about = single(normalized(normal));
         const SphereGrid grid(normalized(about), 1e3);

@@ -51,7 +51,8 @@ void ChiSquaredTests::expectAll() const
     const double threshold = sidakThreshold(kAlpha, tests_.size());
     for (const auto& [what, test] : tests_)
     {
-        fmt::print("  {}: chi-squared {:.1f} with {} degrees of freedom, p {:.3g}\n", what, test.statistic, test.degrees, test.p);
+        fmt::print("  {}: chi-squared {:.1f} with {} degrees of freedom, p {:.3g}\n", what, test.statistic,
+                   test.degrees, test.p);
         EXPECT_GE(test.p, threshold) << what;
     }
 }
@@ -85,7 +86,8 @@ double SphereGrid::simpson(const std::function<double(Double3)>& density, const 
         for (uint32_t k = 0; k <= steps; ++k)
         {
             const double phi = patch.phi0 + (patch.phi1 - patch.phi0) * k / steps;
-            sum += solid_angle * weight(k) * density((1 - m) * axis_ + sine * (std::cos(phi) * side_ + std::sin(phi) * up_));
+            sum += solid_angle * weight(k) *
+                   density((1 - m) * axis_ + sine * (std::cos(phi) * side_ + std::sin(phi) * up_));
         }
     }
     return sum * (patch.s1 - patch.s0) * (patch.phi1 - patch.phi0) / (9 * steps * steps);
@@ -94,7 +96,8 @@ double SphereGrid::simpson(const std::function<double(Double3)>& density, const 
 double SphereGrid::integral(const std::function<double(Double3)>& density, const Patch& patch, double tolerance,
                             uint32_t depth) const
 {
-    // Points on the rim, too, so that no jump hides there; two rules may agree by accident where the density jumps, hardly three.
+    // Points on the rim, too, so that no jump hides there; two rules may agree by accident where the density jumps,
+    // hardly three.
     const double fine = simpson(density, patch, 6);
     if (depth == 0)
         return fine;
@@ -111,8 +114,8 @@ double SphereGrid::integral(const std::function<double(Double3)>& density, const
 
 std::vector<double> SphereGrid::integrate(const std::function<double(Double3)>& density) const
 {
-    // A fifth of a sample in 200000, against a deviation of 2 or more in cells that count. A lobe that is narrower than the
-    // points lie apart could be overlooked: hence patches that are smaller than cells from the start.
+    // A fifth of a sample in 200000, against a deviation of 2 or more in cells that count. A lobe that is narrower than
+    // the points lie apart could be overlooked: hence patches that are smaller than cells from the start.
     constexpr double kTolerance = 1e-6;
     constexpr uint32_t kDepth = 8, kParts = 2;
     std::vector<double> result(cellCount());
@@ -121,7 +124,8 @@ std::vector<double> SphereGrid::integrate(const std::function<double(Double3)>& 
         for (uint32_t k = 0; k < kSlices * kParts; ++k)
         {
             const auto at = [](uint32_t part, uint32_t count) { return double(part) / (count * kParts); };
-            const Patch patch{at(i, kRings), at(i + 1, kRings), (at(k, kSlices) - 0.5) * kTwoPi, (at(k + 1, kSlices) - 0.5) * kTwoPi};
+            const Patch patch{at(i, kRings), at(i + 1, kRings), (at(k, kSlices) - 0.5) * kTwoPi,
+                              (at(k + 1, kSlices) - 0.5) * kTwoPi};
             const double probability = integral(density, patch, kTolerance / kParts, kDepth);
             result[i / kParts * kSlices + k / kParts] += probability;
             sum += probability;

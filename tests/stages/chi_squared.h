@@ -57,7 +57,8 @@ private:
         double s0, s1, phi0, phi1;
     };
     double simpson(const std::function<double(Double3)>& density, const Patch& patch, uint32_t steps) const;
-    double integral(const std::function<double(Double3)>& density, const Patch& patch, double tolerance, uint32_t depth) const;
+    double integral(const std::function<double(Double3)>& density, const Patch& patch, double tolerance,
+                    uint32_t depth) const;
 
     Double3 axis_, side_, up_;
     double width_;

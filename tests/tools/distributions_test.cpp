@@ -28,7 +28,8 @@ TEST(Distributions, IncompleteBetaHasItsClosedForms)
         {
             expectClose(regularisedBeta(a, 1, x), std::pow(x, a));
             EXPECT_NEAR(regularisedBeta(1, a, x), 1 - std::pow(1 - x, a), 1e-12);
-            EXPECT_NEAR(regularisedBeta(a, 7.5, x) + regularisedBeta(7.5, a, 1 - x), 1, 1e-12 + 1e-16 / x); // 1 - x is rounded
+            EXPECT_NEAR(regularisedBeta(a, 7.5, x) + regularisedBeta(7.5, a, 1 - x), 1,
+                        1e-12 + 1e-16 / x); // 1 - x is rounded
         }
     }
 }

@@ -93,7 +93,8 @@ TEST(Welch, FindsAKnownShiftAndWhereItIs)
     EXPECT_LT(result.smallest.p, result.threshold);
     const Picture map = pValueMap(result);
     EXPECT_EQ(map.width, 4u);
-    EXPECT_EQ((std::vector<uint8_t>(map.rgb.begin() + 3 * 9, map.rgb.begin() + 3 * 10)), (std::vector<uint8_t>{0, 0, 255}));
+    EXPECT_EQ((std::vector<uint8_t>(map.rgb.begin() + 3 * 9, map.rgb.begin() + 3 * 10)),
+              (std::vector<uint8_t>{0, 0, 255}));
 }
 
 TEST(Welch, SeesInTheWholePictureWhatNoTileShows)
@@ -130,7 +131,8 @@ TEST(Welch, TilesWithoutNoiseAreEqualOrNot)
 
 TEST(Welch, ABugInTheCallAborts)
 {
-    const std::vector<ImageF> one(1, constantImage(4, 4, 1, 1, 1)), two(2, one[0]), wide(2, constantImage(8, 4, 1, 1, 1));
+    const std::vector<ImageF> one(1, constantImage(4, 4, 1, 1, 1)), two(2, one[0]),
+        wide(2, constantImage(8, 4, 1, 1, 1));
     EXPECT_DEATH(welch(one, two), "1 and 2 pictures");
     EXPECT_DEATH(welch(two, wide), "8 x 4 and 4 x 4");
 }

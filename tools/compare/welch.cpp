@@ -82,9 +82,9 @@ void setRatio(const Moments& a, const Moments& b, size_t channel, WelchResult& r
     result.mean_b[channel] = b.mean;
     const double infinity = std::numeric_limits<double>::infinity();
     result.mean_ratio[channel] = b.mean != 0 ? a.mean / b.mean : a.mean == 0 ? 1.0 : infinity;
-    result.ratio_error[channel] = b.mean != 0 ? std::sqrt(a.variance + std::pow(result.mean_ratio[channel], 2) * b.variance) /
-                                                    std::abs(b.mean)
-                                              : 0.0;
+    result.ratio_error[channel] =
+        b.mean != 0 ? std::sqrt(a.variance + std::pow(result.mean_ratio[channel], 2) * b.variance) / std::abs(b.mean)
+                    : 0.0;
 }
 
 void checkImages(std::span<const ImageF> a, std::span<const ImageF> b)

@@ -41,7 +41,8 @@ std::string jsonText(const WelchResult& r, const Sets& sets)
     json["test_count"] = r.tests.size();
     json["threshold"] = r.threshold;
     json["below_count"] = r.below_count;
-    json["smallest"] = {{"p", r.smallest.p}, {"channel", kChannels[r.smallest.channel]}, {"difference", r.smallest.difference}};
+    json["smallest"] = {
+        {"p", r.smallest.p}, {"channel", kChannels[r.smallest.channel]}, {"difference", r.smallest.difference}};
     if (!r.smallest.is_whole)
         json["smallest"]["pixel"] = {r.smallest.tile_x * r.tile, r.smallest.tile_y * r.tile};
     json["mean_set"] = r.mean_a;
@@ -54,9 +55,9 @@ std::string jsonText(const WelchResult& r, const Sets& sets)
 /// One line for scripts, see README.md.
 std::string tsvText(const WelchResult& r, const Sets& sets)
 {
-    return fmt::format("{}\t{:.6g}\t{:.6g}\t{}\t{}\t{:.6f}\t{:.6f}\t{:.6f}\t{:.6g}\t{:.6g}\t{:.6g}\t{}\n", r.differ() ? 1 : 0,
-                       r.smallest.p, r.threshold, r.below_count, r.tests.size(), r.mean_ratio[0], r.mean_ratio[1],
-                       r.mean_ratio[2], r.ratio_error[0], r.ratio_error[1], r.ratio_error[2],
+    return fmt::format("{}\t{:.6g}\t{:.6g}\t{}\t{}\t{:.6f}\t{:.6f}\t{:.6f}\t{:.6g}\t{:.6g}\t{:.6g}\t{}\n",
+                       r.differ() ? 1 : 0, r.smallest.p, r.threshold, r.below_count, r.tests.size(), r.mean_ratio[0],
+                       r.mean_ratio[1], r.mean_ratio[2], r.ratio_error[0], r.ratio_error[1], r.ratio_error[2],
                        sets.nonfinite_a + sets.nonfinite_b);
 }
 
@@ -100,18 +101,20 @@ void addWelchOptions(CLI::App& app, WelchOptions& options)
     app.add_option("--alpha", options.alpha, "chance that --welch finds a difference where there is none [0.01]")
         ->check(CLI::Range(1e-9, 0.5))
         ->needs(welch);
-    app.add_option("--p-map", options.p_map,
-                   "write a pixel a tile: its p as grey; red or blue where --welch finds the set too bright or dark (.png)")
+    app.add_option(
+           "--p-map", options.p_map,
+           "write a pixel a tile: its p as grey; red or blue where --welch finds the set too bright or dark (.png)")
         ->needs(welch);
 }
 
 int runWelch(const WelchOptions& options, const std::vector<uint32_t>& crop, Output output)
 {
     if (options.set.size() < 2 || options.against.size() < 2)
-        return fail("--welch", {ExitCode::kUsage,
-                                fmt::format("A set's noise shows from two pictures on, but --welch has {} and --against {}; "
-                                            "give at least 2 to each, rendered with different seeds.",
-                                            options.set.size(), options.against.size())});
+        return fail("--welch",
+                    {ExitCode::kUsage,
+                     fmt::format("A set's noise shows from two pictures on, but --welch has {} and --against {}; "
+                                 "give at least 2 to each, rendered with different seeds.",
+                                 options.set.size(), options.against.size())});
     std::vector<std::string> files = options.set;
     files.insert(files.end(), options.against.begin(), options.against.end());
     Sets sets;
