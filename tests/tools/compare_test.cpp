@@ -53,14 +53,15 @@ TEST_F(Compare, TsvIsOneLineOfTheFiguresOfJson)
     ASSERT_EQ(run.exit_code, 0) << run.err;
     const nlohmann::json json = nlohmann::json::parse(json_run.out);
     const std::vector<double> expected{json["mean_ratio"][0], json["mean_ratio"][1], json["mean_ratio"][2], json["relmse"],
-                                       json["relmse_trimmed"], json["ldr_flip"], json["hdr_flip"], 0};
+                                       json["relmse_trimmed"], json["ldr_flip"], json["hdr_flip"], 0,
+                                       json["bias_z"], json["mean_difference"]};
     std::istringstream text(run.out);
     std::vector<double> figures;
     for (double figure; text >> figure;)
         figures.push_back(figure);
     ASSERT_EQ(figures.size(), expected.size()) << run.out;
     for (size_t i = 0; i < expected.size(); ++i)
-        EXPECT_NEAR(figures[i], expected[i], 1e-6 + 1e-5 * expected[i]) << i; // as many digits as are printed
+        EXPECT_NEAR(figures[i], expected[i], 1e-6 + 1e-5 * std::abs(expected[i])) << i; // as many digits as are printed
     EXPECT_EQ(std::ranges::count(run.out, '\n'), 1);
     EXPECT_EQ(compare(pair() + " --tsv --json").exit_code, 1);
 }

@@ -77,6 +77,7 @@ std::string jsonText(const Report& report)
     json["rmse"] = m.rmse;
     json["relmse"] = m.relmse;
     json["relmse_trimmed"] = m.relmse_trimmed;
+    json["mean_difference"] = m.mean_difference;
     json["bias_z"] = m.bias_z;
     json["hdr_flip"] = report.hdr.mean;
     json["hdr_flip_exposures"] = {
@@ -89,8 +90,9 @@ std::string jsonText(const Report& report)
 std::string tsvText(const Report& report)
 {
     const Metrics& m = report.metrics;
-    return fmt::format("{:.6f}\t{:.6f}\t{:.6f}\t{:.6g}\t{:.6g}\t{:.6f}\t{:.6f}\t{}\n", m.mean_ratio[0], m.mean_ratio[1], m.mean_ratio[2],
-                       m.relmse, m.relmse_trimmed, report.ldr.mean, report.hdr.mean, m.test_nonfinite);
+    return fmt::format("{:.6f}\t{:.6f}\t{:.6f}\t{:.6g}\t{:.6g}\t{:.6f}\t{:.6f}\t{}\t{:.6g}\t{:.6g}\n", m.mean_ratio[0], m.mean_ratio[1],
+                       m.mean_ratio[2], m.relmse, m.relmse_trimmed, report.ldr.mean, report.hdr.mean, m.test_nonfinite, m.bias_z,
+                       m.mean_difference);
 }
 
 std::string plainText(const Report& report)
@@ -103,13 +105,14 @@ std::string plainText(const Report& report)
                        "mean reference  {}\n"
                        "mean test       {}\n"
                        "mean ratio      {}\n"
+                       "mean difference {:.6g}\n"
                        "bias z          {:.2f}\n"
                        "RMSE            {:.6g}\n"
                        "relMSE          {:.6g} (trimmed of the worst 0.1 %: {:.6g})\n"
                        "HDR-FLIP        {:.6f} ({} exposures, {:.4f} to {:.4f})\n"
                        "LDR-FLIP        {:.6f}\n",
                        report.width, report.height, m.reference_nonfinite, m.test_nonfinite, rgb(m.reference_mean),
-                       rgb(m.test_mean), rgb(m.mean_ratio), m.bias_z, m.rmse, m.relmse, m.relmse_trimmed,
+                       rgb(m.test_mean), rgb(m.mean_ratio), m.mean_difference, m.bias_z, m.rmse, m.relmse, m.relmse_trimmed,
                        report.hdr.mean, report.exposures.count, report.exposures.start, report.exposures.stop,
                        report.ldr.mean);
 }
