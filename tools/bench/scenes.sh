@@ -54,7 +54,7 @@ far              320x180 128x72 0.08 64    truth,same:far_local
 far_local        320x180 128x72 0.08 64    -
 decal            320x180 128x72 0.08 64    truth,equal:decal_none
 decal_none       320x180 128x72 0.08 64    -
-terminator       320x180 128x72 0.08 64    truth
+terminator       320x180 128x72 0.08 64    truth,like:terminator_fine
 terminator_fine  320x180 128x72 0.08 64    -
 flipped          320x180 128x72 0.08 64    truth,equal:flipped_agreed
 flipped_agreed   320x180 128x72 0.08 64    -
@@ -80,7 +80,7 @@ of_scene() {
 # source_of SCENE: the glTF file of a scene; nothing where it is not there.
 source_of() {
     local file
-    file=$(of_scene "$1" file)
+    file=$(of_scene "$1" file) || exit
     if [[ -n $file ]]; then
         file=$shared/$file
     else
@@ -100,7 +100,7 @@ source_of() {
 package_of() {
     local source package=$out/$1.lumi
     local -a options=()
-    source=$(source_of "$1")
+    source=$(source_of "$1") || exit
     [[ -n $source ]] || return 0
     mapfile -t options < <(of_scene "$1" options)
     if [[ ! -e $package || $source -nt $package || $bin/lumicut-compile -nt $package ]]; then
@@ -114,7 +114,7 @@ package_of() {
 reference_of() {
     local hash scene depth picture log=$out/reference-$$-$BASHPID.log number=${5:-0}
     scene=$(basename "$1" .lumi)
-    depth=$(of_scene "$scene" depth)
+    depth=$(of_scene "$scene" depth) || exit
     hash=$(sha256sum "$1" | cut -c 1-12)
     picture=$out/reference-$scene-$hash-$2-$3-$4$( ((number)) && echo "-$number" || :).exr
     if [[ ! -e $picture ]]; then
