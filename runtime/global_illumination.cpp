@@ -44,6 +44,7 @@ struct GlobalIllumination::Frame
     uint32_t pixel_count;
     uint32_t index; // in a standing picture
     uint32_t seed;  // of this frame alone
+    uint32_t placement_seed; // the same, of where irradiance samples are
     bool moved;     // the camera, since the last frame
     bool shows(uint32_t term) const
     {
@@ -100,7 +101,9 @@ GlobalIllumination::GlobalIllumination(const Device& device, const SceneGpu& sce
 const Buffer& GlobalIllumination::record(Recorder& rec, const RayStage& rays, const gpu::CameraParams& camera,
                                          const Settings& settings, bool moved)
 {
-    const auto primary = primary_.record(rec, rays, {.camera = camera, .specular_depth = settings.specular_depth});
+    gpu::CameraParams placement = camera;
+    placement.seed = placement_seed_.value_or(camera.seed);
+    const auto primary = primary_.record(rec, rays, {.camera = placement, .specular_depth = settings.specular_depth});
     const Frame frame{.rec = rec,
                       .rays = rays,
                       .camera = camera,
@@ -111,6 +114,7 @@ const Buffer& GlobalIllumination::record(Recorder& rec, const RayStage& rays, co
                       .pixel_count = width_ * height_,
                       .index = camera.first_sample,
                       .seed = traceSeed(camera.seed, camera.first_sample, gpu::kTermIndirect),
+                      .placement_seed = traceSeed(placement.seed, camera.first_sample, gpu::kTermIndirect),
                       .moved = moved};
     if (!frame.shows(gpu::kTermEmission))
         rec.clear(frame.radiance);
@@ -303,19 +307,21 @@ SamplesStage::Input GlobalIllumination::samplesInput(const Frame& frame, uint32_
             .iterations = settings.sample_iterations,
             .alpha = settings.sample_alpha * 2 / longest_side_,
             .reach = settings.sample_reach,
-            .seed = frame.seed,
+            .seed = frame.placement_seed,
             .age = age};
 }
 
 GatherStage::Input GlobalIllumination::gatherInput(const Frame& frame) const
 {
     const Settings& settings = frame.settings;
+    SamplesStage::Input placed = samplesInput(frame, sample_age_);
+    placed.seed = frame.seed;
     return {.mode = CutMode(settings.cut_mode),
             .ray_count = settings.gather_rays,
             .specular_depth = chainDepth(settings),
             .photon_count = settings.density_photons,
             .radius = (settings.cut_mode == gpu::kCutKnn ? settings.density_radius : kSearchRadius) * diagonal_,
-            .seed = samplesInput(frame, sample_age_).frameSeed(),
+            .seed = placed.frameSeed(),
             .by_direction = reflectsByHarmonics(frame)};
 }
 

@@ -35,6 +35,10 @@ public:
                          bool moved = false);
     /// Of the last frame; waits for the device.
     std::vector<gpu::Sample> irradianceSamples(const Device& device) const { return samples_.download(device); }
+    uint32_t cutNodeCount(const Device& device) const { return cut_.nodeCount(device); }
+    /// From now on shading points and irradiance samples are those of that seed, whatever the frame's: so that what is
+    /// gathered there can be compared.
+    void placeSamplesBy(uint32_t seed) { placement_seed_ = seed; }
 
 private:
     struct Frame;
@@ -101,4 +105,5 @@ private:
     uint32_t sampleAge(const Frame& frame);
     std::optional<SamplesOrigin> last_samples_; // of the last frame, where it was the first of its picture
     uint32_t sample_age_ = 0;                   // frames since all samples were new
+    std::optional<uint32_t> placement_seed_;    // of placeSamplesBy()
 };

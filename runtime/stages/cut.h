@@ -38,6 +38,8 @@ public:
         const Tree& tree;    // over their supports
     };
     Output record(Recorder& rec, const RayStage& rays, const PhotonTreeStage::Output& map, const Input& in) const;
+    /// Nodes of the last record()'s cut; waits for the device.
+    uint32_t nodeCount(const Device& device) const { return device.download<gpu::QueueSize>(size_, 1)[0].count; }
     /// What the last record() left.
     Output output() const { return {.size = size_, .nodes = nodes_, .directions = directions_, .tree = tree_}; }
 

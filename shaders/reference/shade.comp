@@ -29,7 +29,7 @@ const uint kRouletteDepth = 3u; // vertices that are always continued
 PathState loadState(uint path)
 {
     if (params.depth == 0u)
-        return PathState(vec3(1.0), vec3(1.0), 0.0, 0.0, kNone, kStageEye);
+        return PathState(vec3(1.0), vec3(1.0), 0.0, 0.0, kNone, params.first_stage);
     return states[path];
 }
 

@@ -430,4 +430,32 @@ TEST_F(ReuseStage, GivesANewViewItsShareOfTheBudget)
     EXPECT_GE(samples.size(), kBudget * 9 / 10);
     EXPECT_LT(kept_, samples.size() / 2);
 }
+
+TEST_F(Reuse, PlacementSeedKeepsSamplesWhereTheyAreUnderOtherSeeds)
+{
+    Renderer renderer(device(), *scene_, Mode::kGi, kWidth, kHeight, smallSettings());
+    Recorder rec(device());
+    const auto samples = [&](uint32_t seed)
+    {
+        rec.begin(scene_->descriptorSet());
+        renderer.restart();
+        renderer.record(rec, kCamera, smallSettings(), seed);
+        rec.submitAndWait();
+        return renderer.irradianceSamples(device());
+    };
+    std::vector<gpu::Sample> free = samples(3);
+    renderer.placeSamplesBy(3);
+    EXPECT_GT(renderer.cutNodeCount(device()), 0u);
+    std::vector<gpu::Sample> kept = samples(4);
+    ASSERT_EQ(free.size(), kept.size());
+    uint32_t relit = 0;
+    for (size_t i = 0; i < free.size(); ++i)
+    {
+        relit += free[i].irradiance.x != kept[i].irradiance.x;
+        for (gpu::Sample* sample : {&free[i], &kept[i]}) // what is gathered
+            sample->irradiance = {}, sample->harmonic = 0;
+    }
+    EXPECT_TRUE(equalBits(free, kept));
+    EXPECT_GT(relit, free.size() / 2);
+}
 } // namespace
