@@ -16,12 +16,14 @@ namespace
 struct Source
 {
     std::vector<std::array<gpu::vec3, 3>> corners; // by triangle
+    std::span<const uint32_t> flags;               // kTriangle*, likewise
     float padding = 0;                             // metres, around every leaf
 };
 
-Source gatherSource(const WorldMesh& mesh)
+Source gatherSource(const WorldMesh& mesh, std::span<const uint32_t> triangle_flags)
 {
     Source source;
+    source.flags = triangle_flags;
     float largest = 0;
     for (const gpu::uvec3& v : mesh.triangles)
     {
@@ -39,6 +41,12 @@ Source gatherSource(const WorldMesh& mesh)
 Box toBox(const RTCBuildPrimitive& p)
 {
     return {{p.lower_x, p.lower_y, p.lower_z}, {p.upper_x, p.upper_y, p.upper_z}};
+}
+
+Box padded(const Box& box, const Source& source)
+{
+    const float p = source.padding;
+    return {box.low - gpu::vec3{p, p, p}, box.high + gpu::vec3{p, p, p}};
 }
 
 RTCBounds toBounds(const Box& b)
@@ -65,9 +73,7 @@ void* createLeaf(RTCThreadLocalAllocator allocator, const RTCBuildPrimitive* pri
     check(count == 1, "leaf of {}", count);
     auto* leaf = new (rtcThreadLocalAlloc(allocator, sizeof(BinaryNode), 16)) BinaryNode;
     leaf->triangle = primitives[0].primID;
-    const float p = static_cast<const Source*>(user)->padding;
-    const Box box = toBox(primitives[0]);
-    leaf->box = {box.low - gpu::vec3{p, p, p}, box.high + gpu::vec3{p, p, p}};
+    leaf->box = padded(toBox(primitives[0]), *static_cast<const Source*>(user));
     return leaf;
 }
 
@@ -130,6 +136,40 @@ BinaryNode* buildBinary(RTCBVH bvh, const Source& source)
     arguments.userPtr = const_cast<Source*>(&source);
     return static_cast<BinaryNode*>(rtcBuildBVH(&arguments));
 }
+
+/// Shadow rays count a triangle with flags as often as they meet it. (Embree cannot be kept from splitting one.)
+class Unsplit
+{
+public:
+    explicit Unsplit(const Source& source) : source_(source), seen_(source.corners.size()) {}
+
+    /// The tree with each triangle that has flags in one leaf, whole; null where nothing is left.
+    BinaryNode* run(BinaryNode* node)
+    {
+        if (!node->isLeaf())
+        {
+            for (BinaryNode*& child : node->children)
+                child = run(child);
+            if (node->children[0] == nullptr || node->children[1] == nullptr)
+                return node->children[0] == nullptr ? node->children[1] : node->children[0];
+            return node;
+        }
+        if (source_.flags[node->triangle] == 0)
+            return node;
+        if (seen_[node->triangle])
+            return nullptr;
+        seen_[node->triangle] = true;
+        Box whole;
+        for (const gpu::vec3& p : source_.corners[node->triangle])
+            whole.grow(p);
+        node->box = padded(whole, source_);
+        return node;
+    }
+
+private:
+    const Source& source_;
+    std::vector<bool> seen_; // by triangle
+};
 } // namespace
 
 Bvh buildBvh(const WorldMesh& mesh, std::span<const uint32_t> triangle_flags)
@@ -139,8 +179,10 @@ Bvh buildBvh(const WorldMesh& mesh, std::span<const uint32_t> triangle_flags)
     const Device device(rtcNewDevice(nullptr));
     check(device, "Embree error {}", int(rtcGetDeviceError(nullptr)));
     const EmbreeBvh memory(rtcNewBVH(device.get()));
-    BinaryNode* root = buildBinary(memory.get(), gatherSource(mesh));
+    const Source source = gatherSource(mesh, triangle_flags);
+    BinaryNode* root = buildBinary(memory.get(), source);
     check(root, "Embree error {}", int(rtcGetDeviceError(device.get())));
+    root = Unsplit(source).run(root);
 
     Bvh bvh = collapse(*root, mesh, triangle_flags);
     for (uint32_t depth = 56; bvh.traversal_stack > gpu::kTraversalStackSize; depth -= 4)

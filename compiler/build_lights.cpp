@@ -34,7 +34,7 @@ double sceneRadius(const WorldMesh& mesh)
         low = min(low, p);
         high = max(high, p);
     }
-    return double(length(high - low)) / 2;
+    return length(toDouble(high) - toDouble(low)) / 2;
 }
 
 /// Solid angle of a spot's cone weighted by its falloff, which rises as a square from the rim to `width` inside it.
@@ -47,7 +47,7 @@ double spotSolidAngle(double cos_outer, double width)
 
 Candidate punctual(const PunctualLight& source, double scene_radius)
 {
-    Candidate c{.light = {.p0 = source.position,
+    Candidate c{.light = {.p0 = toFloat(source.position),
                           .kind = source.kind,
                           .p1 = source.direction,
                           .triangle = gpu::kNone,
@@ -93,7 +93,8 @@ Candidate emissiveTriangle(const SceneData& scene, uint32_t triangle)
         mean = mean * material.alpha; // textures may take more away
     if (masked && material.alpha < material.alpha_cutoff)
         mean = {}; // nothing is there
-    const double area = double(length(cross(p1 - p0, p2 - p0))) / 2;
+    const Vec3d origin = toDouble(p0);
+    const double area = length(cross(toDouble(p1) - origin, toDouble(p2) - origin)) / 2;
     return {.light = {.p0 = p0,
                       .kind = two_sided ? gpu::kLightTriangleTwoSided : gpu::kLightTriangle,
                       .p1 = p1,

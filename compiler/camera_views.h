@@ -4,11 +4,11 @@
 #include "compiler/scene_data.h"
 #include "format/result.h"
 
-/// Parses NAME=EX,EY,EZ,TX,TY,TZ,YFOV: eye and target in metres, vertical field of view in degrees.
+/// Parses NAME=EX,EY,EZ,TX,TY,TZ,YFOV: eye and target in metres of the file, vertical field of view in degrees.
 Result<CameraView> parseView(const std::string& text);
 
 /// A three-quarter view that frames the box, named "default".
 CameraView defaultView(const Bounds& box);
 
 /// Numbers separated by commas, exactly `count` of them, all finite.
-Result<std::vector<float>> parseNumbers(const std::string& text, size_t count);
+Result<std::vector<double>> parseNumbers(const std::string& text, size_t count);

@@ -7,9 +7,9 @@
 #include "compiler/flatten.h"
 #include "compiler/gltf_material.h"
 #include "compiler/import_gltf.h"
-#include "compiler/linear.h"
 #include "compiler/package_meta.h"
 #include "compiler/texture_pages.h"
+#include "compiler/world_frame.h"
 
 #include <fmt/format.h>
 
@@ -45,9 +45,16 @@ private:
     double last_ = 0;
 };
 
+/// Adds the options' views, which are in the file's coordinates, and goes over to the package's.
+Status placeScene(const CompileOptions& options, ImportedScene& imported)
+{
+    std::vector<CameraView>& cameras = imported.scene.cameras;
+    cameras.insert(cameras.begin(), options.views.begin(), options.views.end());
+    return moveIntoFrame(imported, chooseFrame(imported));
+}
+
 Status addViewsAndLights(const CompileOptions& options, SceneData& scene)
 {
-    scene.cameras.insert(scene.cameras.begin(), options.views.begin(), options.views.end());
     if (scene.cameras.empty())
         scene.cameras.push_back(defaultView(bounds(scene.mesh)));
     if (options.sun)
@@ -167,6 +174,8 @@ Result<CompileReport> runPipeline(const CompileOptions& options)
     if (!imported)
         return imported.error();
     SceneData& scene = imported->scene;
+    if (const Status status = placeScene(options, *imported); !status)
+        return status.error();
     watch.stage("geometry",
                 fmt::format("{} primitives, {} objects", imported->primitives.size(), imported->instances.size()));
 

@@ -17,7 +17,7 @@ struct CompileOptions
     std::filesystem::path output; // .lumi
     std::optional<std::filesystem::path> environment{};
     std::optional<PunctualLight> sun{};
-    std::vector<CameraView> views{}; // come before the file's own cameras
+    std::vector<CameraView> views{}; // in the file's coordinates; come before its own cameras
     bool default_light = true;       // give a scene without any light a sky and a sun
     int zstd_level = 0;              // 0: no compression
     std::vector<std::string> text{}; // the options as given, for the package's provenance

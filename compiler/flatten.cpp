@@ -16,25 +16,18 @@ namespace
 constexpr uint32_t kUnset = 0xffffffffu;
 constexpr size_t kMaxTriangles = 100'000'000; // spatial splits add to them; leaves address 2^28
 
-struct Double3
-{
-    double x, y, z;
-};
-
 /// Twice the area is below what a shader can still turn into a normal, or below rounding of the longest edge.
 bool isDegenerate(gpu::vec3 a, gpu::vec3 b, gpu::vec3 c)
 {
-    constexpr double kSmallestArea = 1e-18; // m^2; its square is still a normal float
-    constexpr double kFlattest = 1e-8;      // height over longest edge
-    const auto edge = [](gpu::vec3 p, gpu::vec3 q) {
-        return Double3{double(q.x) - p.x, double(q.y) - p.y, double(q.z) - p.z};
-    };
-    const auto square = [](Double3 v) { return v.x * v.x + v.y * v.y + v.z * v.z; };
-    const Double3 u = edge(a, b);
-    const Double3 v = edge(a, c);
-    const Double3 n{u.y * v.z - u.z * v.y, u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x};
-    const double area = std::sqrt(square(n));
-    const double longest = std::max({square(u), square(v), square(edge(b, c))});
+    // Its square is still a normal float. Sizes of scenes are 2^-10 units of length and more (world_frame.h), so that
+    // edges of a millionth of that pass.
+    constexpr double kSmallestArea = 1e-18;
+    constexpr double kFlattest = 1e-8; // height over longest edge
+    const Vec3d u = toDouble(b) - toDouble(a);
+    const Vec3d v = toDouble(c) - toDouble(a);
+    const Vec3d w = toDouble(c) - toDouble(b);
+    const double area = length(cross(u, v));
+    const double longest = std::max({dot(u, u), dot(v, v), dot(w, w)});
     return !(area > kSmallestArea) || !(area > kFlattest * longest);
 }
 
@@ -100,59 +93,94 @@ size_t triangleTotal(const ImportedScene& imported)
 class Flattener
 {
 public:
-    Flattener(size_t triangle_total, ImportCounts& counts) : counts_(counts), seen_(triangle_total) {}
+    Flattener(const SceneData& scene, size_t triangle_total, ImportCounts& counts)
+        : scene_(scene), counts_(counts), seen_(triangle_total)
+    {
+    }
 
     Status add(const MeshPrimitive& primitive, const Transform& to_world, uint32_t object)
     {
-        transformPositions(primitive, to_world);
+        transformVertices(primitive, to_world);
         for (const gpu::vec3 p : world_)
             if (!isFinite(p))
                 return Error{ExitCode::kInvalid, "a node's transform moves vertices beyond the range of numbers"};
-        slot_.assign(primitive.positions.size(), kUnset);
+        for (std::vector<uint32_t>& slots : slots_)
+            slots.assign(primitive.positions.size(), kUnset);
         const bool mirrored = to_world.determinant() < 0;
         for (const gpu::uvec3 t : primitive.triangles)
-            addTriangle(primitive, to_world, object, mirrored ? gpu::uvec3{t.x, t.z, t.y} : t);
+            addTriangle(primitive, mirrored, object, mirrored ? gpu::uvec3{t.x, t.z, t.y} : t);
         return Success{};
     }
 
     WorldMesh take() { return std::move(mesh_); }
+    uint64_t flippedTriangles() const { return flipped_triangles_; }
     uint64_t repairedNormals() const { return repaired_normals_; }
     uint64_t repairedValues() const { return repaired_values_; }
 
 private:
-    void transformPositions(const MeshPrimitive& primitive, const Transform& to_world)
+    void transformVertices(const MeshPrimitive& primitive, const Transform& to_world)
     {
         world_.resize(primitive.positions.size());
+        normals_.resize(primitive.positions.size());
         for (size_t i = 0; i < world_.size(); ++i)
-            world_[i] = to_world.point(primitive.positions[i]);
+        {
+            world_[i] = toFloat(to_world.point(toDouble(primitive.positions[i])));
+            normals_[i] = unitOrZero(to_world.normal(unitOrZero(toDouble(primitive.normals[i]))));
+        }
+        tangents_.clear();
+        for (const gpu::vec4& t : primitive.tangents)
+            tangents_.push_back(unitOrZero(to_world.vector({t.x, t.y, t.z})));
     }
 
-    void addTriangle(const MeshPrimitive& primitive, const Transform& to_world, uint32_t object, gpu::uvec3 t)
+    /// Whether the normals of all three corners are behind the triangle. Those that graze it are left to shading, which
+    /// bends normals to the viewer's side: where faces meet smoothly at right angles rounding decides about them.
+    bool opposesWinding(gpu::uvec3 t, const Vec3d& facing) const
+    {
+        constexpr double kBehind = -0.05; // sine of 3 degrees
+        bool any = false;
+        for (const uint32_t v : {t.x, t.y, t.z})
+        {
+            if (normals_[v] == Vec3d{})
+                continue;
+            if (dot(normals_[v], facing) > kBehind)
+                return false;
+            any = true;
+        }
+        return any;
+    }
+
+    void addTriangle(const MeshPrimitive& primitive, bool mirrored, uint32_t object, gpu::uvec3 t)
     {
         if (isDegenerate(world_[t.x], world_[t.y], world_[t.z]))
         {
             ++counts_.degenerate_triangles;
             return;
         }
-        const gpu::vec3 facing = normalizeOr(cross(world_[t.y] - world_[t.x], world_[t.z] - world_[t.x]), {0, 1, 0});
+        const Vec3d corner = toDouble(world_[t.x]);
+        const Vec3d facing = unitOrZero(cross(toDouble(world_[t.y]) - corner, toDouble(world_[t.z]) - corner));
+        const bool flipped = opposesWinding(t, facing);
+        std::vector<uint32_t>& slots = slots_[flipped];
         const size_t vertices_before = mesh_.positions.size();
         std::array<uint32_t, 3> fresh{kUnset, kUnset, kUnset};
-        const auto vertex = [&](uint32_t v, size_t corner)
+        const auto vertex = [&](uint32_t v, size_t place)
         {
-            if (slot_[v] == kUnset)
+            if (slots[v] == kUnset)
             {
-                slot_[v] = uint32_t(mesh_.positions.size());
-                fresh[corner] = v;
+                slots[v] = uint32_t(mesh_.positions.size());
+                fresh[place] = v;
                 mesh_.positions.push_back(world_[v]);
-                mesh_.attributes.push_back(attributes(primitive, to_world, v, facing));
+                mesh_.attributes.push_back(attributes(primitive, mirrored, v, t, facing, flipped));
             }
-            return slot_[v];
+            return slots[v];
         };
         mesh_.triangles.push_back({vertex(t.x, 0), vertex(t.y, 1), vertex(t.z, 2)});
         mesh_.materials.push_back(primitive.material);
         mesh_.objects.push_back(object);
         if (seen_.add(mesh_, uint32_t(mesh_.triangles.size() - 1)))
+        {
+            flipped_triangles_ += flipped;
             return;
+        }
         ++counts_.duplicate_triangles; // take it back, with the vertices it brought
         mesh_.triangles.pop_back();
         mesh_.materials.pop_back();
@@ -161,7 +189,7 @@ private:
         mesh_.attributes.resize(vertices_before);
         for (const uint32_t v : fresh)
             if (v != kUnset)
-                slot_[v] = kUnset;
+                slots[v] = kUnset;
     }
 
     float finite(float v)
@@ -172,22 +200,35 @@ private:
         return 0;
     }
 
-    gpu::VertexAttributes attributes(const MeshPrimitive& from, const Transform& to_world, uint32_t v, gpu::vec3 facing)
+    /// Normals against the winding come with signs made before either was turned, or with signs made from the winding:
+    /// only the normal map's coordinates tell.
+    bool negativeBitangent(const MeshPrimitive& from, bool mirrored, uint32_t v, gpu::uvec3 t, bool flipped) const
     {
-        gpu::vec3 normal = normalizeOr(to_world.normal(normalizeOr(from.normals[v], {0, 0, 0})), {0, 0, 0});
-        if (dot(normal, normal) == 0)
+        const bool given = (from.tangents[v].w < 0) != mirrored;
+        const uint32_t map = scene_.materials[from.material].normal_texture;
+        if (!flipped || map == gpu::kNone)
+            return given != flipped;
+        const float sign = handedness(from, t, scene_.texture_uses[map]);
+        return sign == 0 ? !given : sign < 0;
+    }
+
+    /// Of vertex `v` in triangle `t` (wound for world space), whose normals are to be flipped or not.
+    gpu::VertexAttributes attributes(const MeshPrimitive& from, bool mirrored, uint32_t v, gpu::uvec3 t,
+                                     const Vec3d& facing, bool flipped)
+    {
+        Vec3d normal = flipped ? normals_[v] * -1 : normals_[v];
+        if (normal == Vec3d{})
         {
             normal = facing;
             ++repaired_normals_;
         }
         gpu::VertexAttributes out{};
-        out.normal = encodeNormal(normal);
+        out.normal = encodeNormal(toFloat(normal));
         if (!from.tangents.empty())
         {
-            const gpu::vec4 t = from.tangents[v];
-            const gpu::vec3 along = to_world.vector({t.x, t.y, t.z});
-            const gpu::vec3 tangent = normalizeOr(along - normal * dot(along, normal), anyOrthogonal(normal));
-            out.tangent = encodeTangent(tangent, (t.w < 0) != (to_world.determinant() < 0));
+            const gpu::vec3 tangent =
+                directionOr(tangents_[v] - normal * dot(tangents_[v], normal), anyOrthogonal(toFloat(normal)));
+            out.tangent = encodeTangent(tangent, negativeBitangent(from, mirrored, v, t, flipped));
         }
         if (!from.uv0.empty())
             out.uv0 = {finite(from.uv0[v].x), finite(from.uv0[v].y)};
@@ -199,11 +240,16 @@ private:
         return out;
     }
 
+    const SceneData& scene_;
     ImportCounts& counts_;
     TriangleSet seen_;
     WorldMesh mesh_;
-    std::vector<gpu::vec3> world_; // of the primitive being added
-    std::vector<uint32_t> slot_;   // its vertices' places in mesh_
+    // Of the primitive being added:
+    std::vector<gpu::vec3> world_;               // positions
+    std::vector<Vec3d> normals_;                 // unit, 0 where the file's has no direction
+    std::vector<Vec3d> tangents_;                // unit or 0
+    std::array<std::vector<uint32_t>, 2> slots_; // places of its vertices in mesh_: as they are, with normals flipped
+    uint64_t flipped_triangles_ = 0;
     uint64_t repaired_normals_ = 0;
     uint64_t repaired_values_ = 0;
 };
@@ -216,7 +262,7 @@ Result<WorldMesh> flatten(const ImportedScene& imported, ImportCounts& counts, s
         return Error{
             ExitCode::kUnsupported,
             fmt::format("it has {} triangles with all its instances; at most {} are supported", total, kMaxTriangles)};
-    Flattener flattener(total, counts);
+    Flattener flattener(imported.scene, total, counts);
     uint32_t object = 0;
     for (const ImportedInstance& instance : imported.instances)
     {
@@ -231,6 +277,9 @@ Result<WorldMesh> flatten(const ImportedScene& imported, ImportCounts& counts, s
     if (mesh.triangles.empty())
         return Error{ExitCode::kInvalid, "its default scene holds no triangles, so there is nothing to render"};
     mesh.object_count = object;
+    if (flattener.flippedTriangles() > 0)
+        warnings.push_back(fmt::format("{} of {} triangles have normals against their winding; they were flipped",
+                                       flattener.flippedTriangles(), mesh.triangles.size()));
     if (flattener.repairedNormals() > 0)
         warnings.push_back(
             fmt::format("{} vertex normals have no direction and were replaced by that of their triangle",

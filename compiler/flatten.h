@@ -3,8 +3,9 @@
 #include "compiler/import_gltf.h"
 
 /// Removes degenerate triangles (two corners in one place, no area) and repeats of a triangle (same corners, winding
-/// and material), counts them, repairs normals without a direction, and drops vertices that nothing uses.
-/// Objects that will move one day do not come here: they keep their own mesh.
+/// and material), counts them, repairs normals without a direction, flips those of triangles whose three normals are
+/// all behind their winding (vertices that are shared with other triangles are split), and drops vertices that nothing
+/// uses. Objects that will move one day do not come here: they keep their own mesh.
 /// @return kInvalid where nothing is left, or positions leave the range of floats
 Result<WorldMesh> flatten(const ImportedScene& imported, ImportCounts& counts, std::vector<std::string>& warnings);
 

@@ -118,8 +118,8 @@ Result<PunctualLight> makeLight(const tinygltf::Light& from, const Transform& to
         light.kind = gpu::kLightDirectional;
     else
         return bad(fmt::format("light type \"{}\" does not exist", from.type.substr(0, 40)));
-    light.position = to_world.point({0, 0, 0});
-    light.direction = normalizeOr(to_world.vector({0, 0, -1}), {0, 0, -1});
+    light.position = to_world.point({});
+    light.direction = directionOr(to_world.vector({0, 0, -1}), {0, 0, -1});
     const bool colored = from.color.size() == 3;
     const auto channel = [&](size_t i)
     { return float(std::max((colored ? from.color[i] : 1.0) * from.intensity, 0.0)); };
@@ -141,10 +141,11 @@ Result<CameraView> makeCamera(const tinygltf::Camera& from, const tinygltf::Node
 {
     CameraView view;
     view.name = !node.name.empty() ? node.name : !from.name.empty() ? from.name : fmt::format("camera {}", index);
-    view.position = to_world.point({0, 0, 0});
-    view.forward = normalizeOr(to_world.vector({0, 0, -1}), {0, 0, -1});
-    const gpu::vec3 up = to_world.vector({0, 1, 0});
-    view.up = normalizeOr(up - view.forward * dot(up, view.forward), anyOrthogonal(view.forward));
+    view.position = to_world.point({});
+    view.forward = directionOr(to_world.vector({0, 0, -1}), {0, 0, -1});
+    const Vec3d forward = toDouble(view.forward);
+    const Vec3d up = unitOrZero(to_world.vector({0, 1, 0}));
+    view.up = directionOr(up - forward * dot(up, forward), anyOrthogonal(view.forward));
     if (from.type == "orthographic")
         view.orthographic_height = float(2 * from.orthographic.ymag);
     else

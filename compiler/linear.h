@@ -1,5 +1,6 @@
 // Linear algebra of importing: unit vectors that always exist, and affine transforms in double precision.
 #pragma once
+#include "compiler/vec3d.h"
 #include "compiler/vector_math.h"
 
 #include <array>
@@ -13,10 +14,7 @@ inline bool isFinite(gpu::vec3 a)
 /// `a` at unit length, or `fallback` where it has none (zero, NaN, infinite).
 inline gpu::vec3 normalizeOr(gpu::vec3 a, gpu::vec3 fallback)
 {
-    const double l = std::sqrt(double(a.x) * a.x + double(a.y) * a.y + double(a.z) * a.z);
-    if (!(l > 1e-30) || !std::isfinite(l))
-        return fallback;
-    return {float(a.x / l), float(a.y / l), float(a.z / l)};
+    return directionOr(toDouble(a), fallback);
 }
 
 /// Some unit vector orthogonal to the unit vector `n`.
@@ -32,17 +30,17 @@ struct Transform
     std::array<double, 9> linear{1, 0, 0, 0, 1, 0, 0, 0, 1}; // column-major
     std::array<double, 3> translation{0, 0, 0};
 
-    gpu::vec3 vector(gpu::vec3 v) const
+    Vec3d vector(const Vec3d& v) const
     {
-        return {float(linear[0] * v.x + linear[3] * v.y + linear[6] * v.z),
-                float(linear[1] * v.x + linear[4] * v.y + linear[7] * v.z),
-                float(linear[2] * v.x + linear[5] * v.y + linear[8] * v.z)};
+        return {linear[0] * v.x + linear[3] * v.y + linear[6] * v.z,
+                linear[1] * v.x + linear[4] * v.y + linear[7] * v.z,
+                linear[2] * v.x + linear[5] * v.y + linear[8] * v.z};
     }
-    gpu::vec3 point(gpu::vec3 p) const
+    Vec3d point(const Vec3d& p) const
     {
-        return {float(linear[0] * p.x + linear[3] * p.y + linear[6] * p.z + translation[0]),
-                float(linear[1] * p.x + linear[4] * p.y + linear[7] * p.z + translation[1]),
-                float(linear[2] * p.x + linear[5] * p.y + linear[8] * p.z + translation[2])};
+        return {linear[0] * p.x + linear[3] * p.y + linear[6] * p.z + translation[0],
+                linear[1] * p.x + linear[4] * p.y + linear[7] * p.z + translation[1],
+                linear[2] * p.x + linear[5] * p.y + linear[8] * p.z + translation[2]};
     }
     double determinant() const
     {
@@ -51,18 +49,17 @@ struct Transform
                m[6] * (m[1] * m[5] - m[4] * m[2]);
     }
     /// For normals: the inverse transpose, but for a positive factor (so that it exists for singular matrices too).
-    gpu::vec3 normal(gpu::vec3 n) const
+    Vec3d normal(const Vec3d& n) const
     {
         const auto& m = linear;
         const double sign = determinant() < 0 ? -1 : 1;
-        const double x =
-            (m[4] * m[8] - m[5] * m[7]) * n.x + (m[2] * m[7] - m[1] * m[8]) * n.y + (m[1] * m[5] - m[2] * m[4]) * n.z;
-        const double y =
-            (m[5] * m[6] - m[3] * m[8]) * n.x + (m[0] * m[8] - m[2] * m[6]) * n.y + (m[2] * m[3] - m[0] * m[5]) * n.z;
-        const double z =
-            (m[3] * m[7] - m[4] * m[6]) * n.x + (m[1] * m[6] - m[0] * m[7]) * n.y + (m[0] * m[4] - m[1] * m[3]) * n.z;
-        const double l = std::sqrt(x * x + y * y + z * z) * sign;
-        return l == 0 ? gpu::vec3{0, 0, 0} : gpu::vec3{float(x / l), float(y / l), float(z / l)};
+        return Vec3d{(m[4] * m[8] - m[5] * m[7]) * n.x + (m[2] * m[7] - m[1] * m[8]) * n.y +
+                         (m[1] * m[5] - m[2] * m[4]) * n.z,
+                     (m[5] * m[6] - m[3] * m[8]) * n.x + (m[0] * m[8] - m[2] * m[6]) * n.y +
+                         (m[2] * m[3] - m[0] * m[5]) * n.z,
+                     (m[3] * m[7] - m[4] * m[6]) * n.x + (m[1] * m[6] - m[0] * m[7]) * n.y +
+                         (m[0] * m[4] - m[1] * m[3]) * n.z} *
+               sign;
     }
 };
 

@@ -66,16 +66,16 @@ Result<int> parseCompression(const std::string& text)
 
 Result<PunctualLight> parseSun(const std::string& text)
 {
-    const Result<std::vector<float>> n = parseNumbers(text, 4);
+    const Result<std::vector<double>> n = parseNumbers(text, 4);
     if (!n)
         return Error{ExitCode::kUsage, fmt::format("--sun: {} (DX,DY,DZ,LUX)", n.error().message)};
-    const gpu::vec3 direction{(*n)[0], (*n)[1], (*n)[2]};
-    const float lux = (*n)[3];
-    if (length(direction) == 0 || !(lux > 0))
+    const Vec3d direction{(*n)[0], (*n)[1], (*n)[2]};
+    const auto lux = float((*n)[3]);
+    if (direction == Vec3d{} || !(lux > 0) || !std::isfinite(lux))
         return Error{ExitCode::kUsage, fmt::format("--sun \"{}\" needs a direction and a positive illuminance", text)};
     PunctualLight sun;
     sun.kind = gpu::kLightDirectional;
-    sun.direction = normalizeOr(direction, {0, -1, 0});
+    sun.direction = directionOr(direction, {0, -1, 0});
     sun.intensity = {lux, lux, lux};
     return sun;
 }

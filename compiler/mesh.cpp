@@ -15,6 +15,8 @@ namespace
 {
 struct SurfaceTraits : OpenMesh::DefaultTraits
 {
+    using Point = OpenMesh::Vec3d; // object space may be of any scale
+    using Normal = OpenMesh::Vec3d;
     FaceAttributes(OpenMesh::Attributes::Normal | OpenMesh::Attributes::Status);
     HalfedgeAttributes(OpenMesh::Attributes::Normal | OpenMesh::Attributes::PrevHalfedge |
                        OpenMesh::Attributes::Status);
@@ -95,28 +97,50 @@ Surface weldedSurface(const MeshPrimitive& mesh, std::vector<Surface::FaceHandle
     return surface;
 }
 
-/// Area-weighted tangent and its handedness in one triangle; handedness 0 where the coordinates are degenerate.
-struct TriangleTangent
+/// Coordinates of vertex `v` in the normal map.
+gpu::vec2 mapCoordinates(const MeshPrimitive& mesh, uint32_t v, const TextureUse& normal_map)
 {
-    gpu::vec3 direction{};
-    float handedness = 0;
+    const std::vector<gpu::vec2>& source = (normal_map.sampling & gpu::kSampleUv1) != 0 ? mesh.uv1 : mesh.uv0;
+    if (v >= source.size())
+        return {};
+    const gpu::vec3 homogeneous{source[v].x, source[v].y, 1};
+    return {dot(normal_map.u_row, homogeneous), dot(normal_map.v_row, homogeneous)};
+}
+
+/// Of a triangle in the normal map's coordinates.
+struct MapEdges
+{
+    float du1, dv1, du2, dv2;
+
+    float determinant() const { return du1 * dv2 - du2 * dv1; }
 };
 
-TriangleTangent triangleTangent(const MeshPrimitive& mesh, gpu::uvec3 t, const std::vector<gpu::vec2>& uv)
+MapEdges mapEdges(const MeshPrimitive& mesh, gpu::uvec3 t, const TextureUse& normal_map)
 {
-    const gpu::vec3 e1 = mesh.positions[t.y] - mesh.positions[t.x];
-    const gpu::vec3 e2 = mesh.positions[t.z] - mesh.positions[t.x];
-    const float du1 = uv[t.y].x - uv[t.x].x, dv1 = uv[t.y].y - uv[t.x].y;
-    const float du2 = uv[t.z].x - uv[t.x].x, dv2 = uv[t.z].y - uv[t.x].y;
-    const float det = du1 * dv2 - du2 * dv1;
-    const gpu::vec3 along_u = normalizeOr((e1 * dv2 - e2 * dv1) * (det < 0 ? -1.0f : 1.0f), {});
-    if (!(std::fabs(det) > 0) || dot(along_u, along_u) == 0)
-        return {};
-    // cross(normal, tangent) * w must point up in the image, towards -v: a quad with u to its right and v down has w
-    // = 1.
-    return {along_u * length(cross(e1, e2)), det < 0 ? 1.0f : -1.0f};
+    const gpu::vec2 a = mapCoordinates(mesh, t.x, normal_map);
+    const gpu::vec2 b = mapCoordinates(mesh, t.y, normal_map);
+    const gpu::vec2 c = mapCoordinates(mesh, t.z, normal_map);
+    return {b.x - a.x, b.y - a.y, c.x - a.x, c.y - a.y};
+}
+
+/// Area-weighted tangent of one triangle along u; 0 where the coordinates are degenerate.
+Vec3d triangleTangent(const MeshPrimitive& mesh, gpu::uvec3 t, const MapEdges& map)
+{
+    const Vec3d corner = toDouble(mesh.positions[t.x]);
+    const Vec3d e1 = toDouble(mesh.positions[t.y]) - corner;
+    const Vec3d e2 = toDouble(mesh.positions[t.z]) - corner;
+    const Vec3d along_u = unitOrZero((e1 * map.dv2 - e2 * map.dv1) * (map.determinant() < 0 ? -1 : 1));
+    return along_u * length(cross(e1, e2));
 }
 } // namespace
+
+float handedness(const MeshPrimitive& mesh, gpu::uvec3 t, const TextureUse& normal_map)
+{
+    // cross(normal, tangent) * w must point up in the image, towards -v: a quad with u to its right and v down has w
+    // = 1.
+    const float determinant = mapEdges(mesh, t, normal_map).determinant();
+    return determinant < 0 ? 1.0f : determinant > 0 ? -1.0f : 0.0f;
+}
 
 uint64_t generateNormals(MeshPrimitive& mesh, float crease_angle)
 {
@@ -162,14 +186,14 @@ uint64_t generateNormals(MeshPrimitive& mesh, float crease_angle)
         const auto at = [&](uint32_t v, Surface::HalfedgeHandle h)
         {
             const auto p = surface.point(surface.to_vertex_handle(h));
-            return positionKey({p[0], p[1], p[2]}) == positionKey(mesh.positions[v]);
+            return positionKey({float(p[0]), float(p[1]), float(p[2])}) == positionKey(mesh.positions[v]);
         };
         for (int turn = 0; turn < 2 && !at(*corner[0], halfedge); ++turn)
             halfedge = surface.next_halfedge_handle(halfedge);
         for (uint32_t* v : corner)
         {
             const auto n = surface.normal(halfedge);
-            *v = vertexWithNormal(*v, normalizeOr({n[0], n[1], n[2]}, {0, 0, 0}));
+            *v = vertexWithNormal(*v, directionOr({n[0], n[1], n[2]}, {0, 0, 0}));
             halfedge = surface.next_halfedge_handle(halfedge);
         }
     }
@@ -179,43 +203,41 @@ uint64_t generateNormals(MeshPrimitive& mesh, float crease_angle)
 uint64_t generateTangents(MeshPrimitive& mesh, const TextureUse& normal_map)
 {
     check(mesh.normals.size() == mesh.positions.size(), "{} normals", mesh.normals.size());
-    const std::vector<gpu::vec2>& source = (normal_map.sampling & gpu::kSampleUv1) != 0 ? mesh.uv1 : mesh.uv0;
-    std::vector<gpu::vec2> uv(mesh.positions.size());
-    for (size_t i = 0; i < source.size(); ++i)
-        uv[i] = {dot(normal_map.u_row, {source[i].x, source[i].y, 1}),
-                 dot(normal_map.v_row, {source[i].x, source[i].y, 1})};
-
     const size_t source_count = mesh.positions.size();
-    std::vector<gpu::vec3> sums(source_count, gpu::vec3{});
-    std::vector<float> handedness(source_count, 0);
+    std::vector<Vec3d> sums(source_count);
+    std::vector<float> signs(source_count, 0);
     std::vector<uint32_t> mirrored(source_count, 0); // a vertex's copy of the other handedness, 0: none
-    const auto add = [&](uint32_t v, const TriangleTangent& t)
+    const auto add = [&](uint32_t v, const Vec3d& tangent, float sign)
     {
-        if (handedness[v] != 0 && handedness[v] != t.handedness)
+        if (signs[v] != 0 && signs[v] != sign)
         {
             if (mirrored[v] == 0)
             {
                 mirrored[v] = duplicateVertex(mesh, v);
                 mesh.normals.push_back(gpu::vec3(mesh.normals[v]));
                 sums.push_back({});
-                handedness.push_back(t.handedness);
+                signs.push_back(sign);
             }
             v = mirrored[v];
         }
-        handedness[v] = t.handedness;
-        sums[v] = sums[v] + t.direction;
+        signs[v] = sign;
+        sums[v] = sums[v] + tangent;
         return v;
     };
     for (gpu::uvec3& t : mesh.triangles)
-        if (const TriangleTangent tangent = triangleTangent(mesh, t, uv); tangent.handedness != 0)
-            t = {add(t.x, tangent), add(t.y, tangent), add(t.z, tangent)};
+    {
+        const Vec3d tangent = triangleTangent(mesh, t, mapEdges(mesh, t, normal_map));
+        if (const float sign = handedness(mesh, t, normal_map); sign != 0 && tangent != Vec3d{})
+            t = {add(t.x, tangent, sign), add(t.y, tangent, sign), add(t.z, tangent, sign)};
+    }
 
     mesh.tangents.resize(mesh.positions.size());
     for (size_t i = 0; i < mesh.tangents.size(); ++i)
     {
-        const gpu::vec3 n = mesh.normals[i];
-        const gpu::vec3 t = normalizeOr(sums[i] - n * dot(n, sums[i]), anyOrthogonal(n));
-        mesh.tangents[i] = {t.x, t.y, t.z, handedness[i] == 0 ? 1.0f : handedness[i]};
+        const Vec3d n = toDouble(mesh.normals[i]);
+        const Vec3d sum = unitOrZero(sums[i]);
+        const gpu::vec3 t = directionOr(sum - n * dot(n, sum), anyOrthogonal(mesh.normals[i]));
+        mesh.tangents[i] = {t.x, t.y, t.z, signs[i] == 0 ? 1.0f : signs[i]};
     }
     return mesh.tangents.size();
 }

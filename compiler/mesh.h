@@ -16,6 +16,10 @@ struct MeshPrimitive
     uint32_t material = 0;             // index into SceneData::materials
 };
 
+/// Handedness of the normal map's coordinates in triangle `t`, seen from the side where its corners run
+/// counter-clockwise: the glTF tangent's w for a normal on that side. 0 where the coordinates have no area.
+float handedness(const MeshPrimitive& mesh, gpu::uvec3 t, const TextureUse& normal_map);
+
 /// Makes smooth normals: vertices at one position are welded, edges sharper than `crease_angle` (radians) stay sharp.
 /// Vertices may be added or split. @return how many vertices have made normals: all
 uint64_t generateNormals(MeshPrimitive& mesh, float crease_angle);

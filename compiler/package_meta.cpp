@@ -3,6 +3,7 @@
 #include "compiler/flatten.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace
 {
@@ -29,7 +30,8 @@ std::unique_ptr<fb::StatisticsT> statistics(const SceneData& scene, const Bvh& b
     s->punctual_lights = uint32_t(std::count_if(lights.lights.begin(), lights.lights.end(),
                                                 [](const gpu::Light& l) { return l.kind <= gpu::kLightDirectional; }));
     s->emissive_triangles = lights.emissive_triangles;
-    s->total_light_power = lights.total_power;
+    s->total_light_power = float(std::min(lights.total_power * scene.frame.unit * scene.frame.unit,
+                                          double(std::numeric_limits<float>::max()))); // W of the file's metres
     return s;
 }
 
@@ -37,7 +39,7 @@ std::unique_ptr<fb::CameraT> camera(const CameraView& view)
 {
     auto c = std::make_unique<fb::CameraT>();
     c->name = view.name;
-    c->position = box(view.position);
+    c->position = box(toFloat(view.position));
     c->forward = box(view.forward);
     c->up = box(view.up);
     c->vertical_fov = view.vertical_fov;
@@ -64,6 +66,10 @@ fb::MetaT makeMeta(const CompileOptions& options, const SceneData& scene, const 
     const Bounds extent = bounds(scene.mesh);
     meta.bounds_min = box(extent.min);
     meta.bounds_max = box(extent.max);
+    const WorldFrame& frame = scene.frame;
+    if (frame.origin != Vec3d{})
+        meta.origin = std::make_unique<fb::Vec3d>(frame.origin.x, frame.origin.y, frame.origin.z);
+    meta.unit = frame.unit;
     for (const CameraView& view : scene.cameras)
         meta.cameras.push_back(camera(view));
     for (const TexturePage& page : textures.pages)

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <array>
 #include <iterator>
 
 namespace
@@ -13,6 +14,12 @@ std::string chunkLabel(const package::WrittenChunk& chunk)
 {
     return chunk.id == package::kTexturePageChunk ? fmt::format("{} {}", package::chunkName(chunk.id), chunk.index)
                                                   : package::chunkName(chunk.id);
+}
+
+std::array<double, 3> originOf(const lumicut::fb::MetaT& meta)
+{
+    return meta.origin ? std::array<double, 3>{meta.origin->x(), meta.origin->y(), meta.origin->z()}
+                       : std::array<double, 3>{};
 }
 
 uint64_t storedBytes(const CompileReport& report)
@@ -34,6 +41,8 @@ std::string summaryText(const CompileReport& report, const CompileOptions& optio
                    s.degenerate_triangles, s.duplicate_triangles);
     fmt::format_to(out, "  vertices   {} ({} normals and {} tangents made)\n", s.vertices, s.generated_normals,
                    report.generated_tangents);
+    const std::array<double, 3> origin = originOf(report.meta);
+    fmt::format_to(out, "  origin     ({}, {}, {}) m, unit {} m\n", origin[0], origin[1], origin[2], report.meta.unit);
     fmt::format_to(out, "  lights     {} point, {} spot, {} directional, {} emissive triangles, {}; {:.4g} W\n",
                    report.point_lights, report.spot_lights, report.directional_lights, s.emissive_triangles,
                    report.meta.environment ? fmt::format("environment {}x{}", report.meta.environment->width,
@@ -68,6 +77,8 @@ std::string reportJson(const CompileReport& report, const CompileOptions& option
     json["options"] = report.meta.provenance->options;
     json["triangles"] = s.triangles;
     json["vertices"] = s.vertices;
+    json["origin"] = originOf(report.meta);
+    json["unit"] = report.meta.unit;
     json["degenerate_triangles"] = s.degenerate_triangles;
     json["duplicate_triangles"] = s.duplicate_triangles;
     json["generated_normals"] = s.generated_normals;

@@ -1,5 +1,6 @@
 // What the compiler knows of a scene between reading glTF and writing the package.
 #pragma once
+#include "compiler/vec3d.h"
 #include "format/gpu_scene.h"
 
 #include <cstdint>
@@ -26,10 +27,18 @@ struct TextureUse
     gpu::vec3 v_row{0, 1, 0};
 };
 
+/// Where the package's coordinates lie in the file's: position in the file = origin + unit * position in the package.
+/// What this compiler calls world space is the package's from moveIntoFrame() on and the file's before.
+struct WorldFrame
+{
+    Vec3d origin{};  // metres, in the file's coordinates
+    double unit = 1; // metres per unit of the package, a power of two
+};
+
 /// All triangles of the scene in world space.
 struct WorldMesh
 {
-    std::vector<gpu::vec3> positions;              // [vertex_count] metres
+    std::vector<gpu::vec3> positions;              // [vertex_count]
     std::vector<gpu::VertexAttributes> attributes; // [vertex_count]
     std::vector<gpu::uvec3> triangles;             // [triangle_count] vertex indices
     std::vector<uint32_t> materials;               // [triangle_count] index into SceneData::materials
@@ -40,9 +49,9 @@ struct WorldMesh
 struct PunctualLight
 {
     uint32_t kind = gpu::kLightPoint; // point, spot, directional
-    gpu::vec3 position{};             // metres, world
+    Vec3d position{};                 // world
     gpu::vec3 direction{0, 0, -1};    // unit, the way the light travels
-    gpu::vec3 intensity{};            // W/sr (point, spot) or W/m^2 (directional), colour included
+    gpu::vec3 intensity{};            // W/sr (point, spot; per squared unit of length) or W/m^2 (directional), coloured
     float inner_cone = 0;             // radians, spot
     float outer_cone = 0.785398163f;
 };
@@ -58,11 +67,11 @@ struct EnvironmentImage
 struct CameraView
 {
     std::string name;
-    gpu::vec3 position{};
+    Vec3d position{};
     gpu::vec3 forward{0, 0, -1}; // unit
     gpu::vec3 up{0, 1, 0};       // unit, orthogonal to forward
     float vertical_fov = 0;        // radians; 0: orthographic
-    float orthographic_height = 0; // metres; 0: perspective
+    float orthographic_height = 0; // 0: perspective
 };
 
 /// Counts of what import and clean-up did; they end in the report and in Meta.statistics.
@@ -79,6 +88,7 @@ struct SceneData
 {
     std::string generator;
     std::string copyright;
+    WorldFrame frame;
     std::vector<std::string> warnings; // full sentences
     WorldMesh mesh;
     std::vector<gpu::Material> materials; // *_texture members index texture_uses

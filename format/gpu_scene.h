@@ -1,5 +1,6 @@
 // The scene as it lies in a package and as shaders read it: one definition for compiler, player and GLSL.
-// Scalar layout. World space is glTF's: right-handed, +Y up, metres. Radiometry is SI, RGB linear Rec. 709.
+// Scalar layout. World space is glTF's: right-handed, +Y up, in units of length of the package
+// (META's unit, 1 m nearly always), which stand for metres throughout. Radiometry is SI, RGB linear Rec. 709.
 #ifndef FORMAT_GPU_SCENE_H
 #define FORMAT_GPU_SCENE_H
 #include "format/gpu_types.h"
@@ -35,7 +36,7 @@ GPU_SIZE(BvhNode, 112);
 GPU_CONST uint kTriangleAlpha = 1u; // BvhTriangle.flags: alpha mask or blend: traversal must look at its coverage
 GPU_CONST uint kTriangleThin = 2u;  // thin-walled smooth transmission: shadow rays pass, tinted
 
-struct BvhTriangle // in leaf order; spatial splits may store one triangle several times
+struct BvhTriangle // in leaf order; spatial splits may store one triangle several times, but only once one with flags
 {
     vec3 v0; // metres, world space, counter-clockwise seen from the front
     uint triangle; // index into Triangles
@@ -219,12 +220,13 @@ GPU_CONST uint kTrianglesBinding = 3u;
 GPU_CONST uint kVertexAttributesBinding = 4u;
 GPU_CONST uint kMaterialsBinding = 5u;
 GPU_CONST uint kLightsBinding = 6u;
-GPU_CONST uint kTextureRefsBinding = 7u; // 7..10: storage buffers
+GPU_CONST uint kTextureRefsBinding = 7u; // 7..11: storage buffers
 GPU_CONST uint kLightAliasesBinding = 8u;
 GPU_CONST uint kEnvironmentTexelsBinding = 9u;
 GPU_CONST uint kCausticTargetsBinding = 10u;
-GPU_CONST uint kTexturePagesBinding = 11u;  // sampler2DArray[kTexturePageCount]
-GPU_CONST uint kEnvironmentMapBinding = 12u; // sampler2D
+GPU_CONST uint kViewScaleBinding = 11u;      // made anew in every frame (shaders/view_scale)
+GPU_CONST uint kTexturePagesBinding = 12u;   // sampler2DArray[kTexturePageCount]
+GPU_CONST uint kEnvironmentMapBinding = 13u; // sampler2D
 
 GPU_NAMESPACE_END
 #endif

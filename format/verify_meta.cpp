@@ -28,10 +28,20 @@ Status verifyCamera(const lumicut::fb::Camera& camera, uint32_t index)
     const bool perspective = fov > 0 && fov < std::numbers::pi_v<float> && height == 0;
     const bool orthographic = height > 0 && std::isfinite(height) && fov == 0;
     if (!perspective && !orthographic)
-        return invalid(
-            "chunk META: camera {} has a field of view of {} radians and an orthographic height of {} m; one "
-            "must be 0, the other positive and a field of view below pi",
-            index, fov, height);
+        return invalid("chunk META: camera {} has a field of view of {} radians and an orthographic height of {}; one "
+                       "must be 0, the other positive and a field of view below pi",
+                       index, fov, height);
+    return Success{};
+}
+
+/// Positions in the source are computed with these, and speeds in metres.
+Status verifyFrame(const lumicut::fb::Meta& meta)
+{
+    const lumicut::fb::Vec3d* const origin = meta.origin();
+    if (origin && !(std::isfinite(origin->x()) && std::isfinite(origin->y()) && std::isfinite(origin->z())))
+        return invalid("chunk META: the origin is not finite");
+    if (!std::isfinite(meta.unit()) || meta.unit() <= 0)
+        return invalid("chunk META: the unit of length is {} m, allowed are positive finite numbers", meta.unit());
     return Success{};
 }
 } // namespace
@@ -43,6 +53,8 @@ Status verifyMeta(const Contents& contents)
     const gpu::vec3 high = toVec3(*meta.bounds_max());
     if (!isFinite(low) || !isFinite(high) || low.x > high.x || low.y > high.y || low.z > high.z)
         return invalid("chunk META: the scene bounds are not finite or upside down");
+    if (Status frame = verifyFrame(meta); !frame)
+        return frame;
     if (meta.cameras()->size() == 0)
         return invalid("chunk META: there is no camera");
     for (uint32_t i = 0; i < meta.cameras()->size(); ++i)

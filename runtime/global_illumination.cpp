@@ -9,9 +9,12 @@
 
 namespace
 {
-constexpr uint32_t kCausticBounces = 2; // photons a caustic path may leave: one, and another behind a smooth layer
+constexpr uint32_t kCausticBounces = 2; // photons that a caustic path is given room for: one, and another behind a smooth layer
 
-constexpr float kGuideReach = 0.05f; // of the scene's diagonal: how far from their camera guided photons serve
+/// Of a wall that 12 rays to the rim may miss, a node's light passes 0.05 % at most.
+constexpr uint32_t kRimProbes = 12;
+
+constexpr float kGuideReach = 0.25f; // of the view distance: how far from their camera guided photons serve
 
 /// What reflects this much sends a glossy ray from every pixel: a standing picture can wait for less noise.
 constexpr float kSureInMotion = 0.2f, kSureStanding = 0.05f;
@@ -20,8 +23,6 @@ constexpr float kSureInMotion = 0.2f, kSureStanding = 0.05f;
 /// least), then takes those: the blur of the first frames fades, and their lack of noise covers the noise of the next ones.
 constexpr uint32_t kOwnRays = 256, kLeastInterpolated = 8;
 
-constexpr float kSearchRadius = 0.1f; // of the scene's diagonal: how far the nearest sample or cut node may be
-
 /// Progressive photon mapping: r_n^2 / r_0^2 = prod (i + 2/3) / (i + 1) over the n frames before (Hachisuka et al.
 /// 2008; Knaus & Zwicker 2011), so that noise and bias vanish together.
 float shrunkRadius(float radius, uint32_t frame)
@@ -29,6 +30,14 @@ float shrunkRadius(float radius, uint32_t frame)
     constexpr double kAlpha = 2.0 / 3.0;
     const double log_ratio = std::lgamma(frame + 1 + kAlpha) - std::lgamma(frame + 2.0) - std::lgamma(1 + kAlpha);
     return radius * float(std::exp(0.5 * log_ratio));
+}
+
+/// Photons that a map of `wanted` has room for: no more than this device's buffers hold of what is made of each.
+uint32_t photonCapacity(const Device& device, uint64_t wanted)
+{
+    const uint64_t range =
+        std::min<uint64_t>(device.limits().maxStorageBufferRange, device.limits().maxTexelBufferElements * kTexelBytes);
+    return uint32_t(std::min(wanted, range / std::max(2 * sizeof(gpu::CutNode), sizeof(gpu::PhotonSums))));
 }
 } // namespace
 
@@ -44,6 +53,7 @@ struct GlobalIllumination::Frame
     uint32_t pixel_count;
     uint32_t index; // in a standing picture
     uint32_t seed;  // of this frame alone
+    uint32_t placement_seed; // the same, of where irradiance samples are
     bool moved;     // the camera, since the last frame
     bool shows(uint32_t term) const
     {
@@ -53,18 +63,19 @@ struct GlobalIllumination::Frame
     }
 };
 
-Status GlobalIllumination::checkCounts(uint64_t range, const Settings& settings)
+Status GlobalIllumination::checkCounts(const VkPhysicalDeviceLimits& limits, uint64_t range, const Settings& settings)
 {
     const auto tooLarge = [&](const char* names, uint64_t most) -> Status
     {
         return Error{ExitCode::kDevice,
                      fmt::format("{} is more than this device's buffers hold, {}; lower one of them", names, most)};
     };
-    const uint64_t most_photons = range / (2 * sizeof(gpu::CutNode)), most_rays = range / sizeof(gpu::Ray);
-    if (uint64_t(settings.photon_count) * settings.photon_bounces > most_photons)
-        return tooLarge("photons.count x photons.bounces", most_photons);
-    if (uint64_t(settings.caustic_photons) * kCausticBounces > most_photons)
-        return tooLarge("caustics.photons", most_photons / kCausticBounces);
+    const uint64_t threads = uint64_t(limits.maxComputeWorkGroupCount[0]) * gpu::kRaysGroupSize;
+    const uint64_t most_rays = std::min(range / sizeof(gpu::Ray), threads), most_starts = range / sizeof(gpu::PhotonStart);
+    if (settings.photon_count > most_starts)
+        return tooLarge("photons.count", most_starts);
+    if (settings.caustic_photons > most_starts)
+        return tooLarge("caustics.photons", most_starts);
     if (uint64_t(settings.sample_count) * settings.gather_rays > most_rays)
         return tooLarge("samples.count x gather.rays", most_rays);
     return Success{};
@@ -72,25 +83,22 @@ Status GlobalIllumination::checkCounts(uint64_t range, const Settings& settings)
 
 GlobalIllumination::GlobalIllumination(const Device& device, const SceneGpu& scene, const Settings& settings,
                                        uint32_t width, uint32_t height)
-    : scene_(scene), width_(width), height_(height), diagonal_(0), longest_side_(0),
+    : scene_(scene), width_(width), height_(height),
       has_specular_(scene.hasFeature(gpu::kFeatureSpecular)), reflects_roughly_(scene.reflectsRoughly()),
       has_caustic_targets_(scene.info().caustic_target_count > 0),
       has_mirrors_(has_caustic_targets_ || scene.hasFeature(gpu::kFeatureTransmission | gpu::kFeatureThin)),
-      primary_(device, scene, width * height), direct_(device, scene, width * height),
-      photons_(device, scene, PhotonKind::kGlobal, settings.photon_count, settings.photon_bounces),
-      caustic_photons_(device, scene, PhotonKind::kCaustic, settings.caustic_photons, kCausticBounces),
-      photon_tree_(device, "photon_tree", settings.photon_count * settings.photon_bounces),
-      caustic_tree_(device, "caustic_tree", settings.caustic_photons * kCausticBounces),
-      cut_(device, scene, settings.photon_count * settings.photon_bounces),
-      samples_(device, scene, width, height, settings.sample_count),
+      primary_(device, scene, width * height), view_scale_(device, scene), direct_(device, scene, width * height),
+      photons_(device, scene, PhotonKind::kGlobal, settings.photon_count, photonCapacity(device, settings.photon_capacity)),
+      caustic_photons_(device, scene, PhotonKind::kCaustic, settings.caustic_photons,
+                       photonCapacity(device, uint64_t(settings.caustic_photons) * kCausticBounces)),
+      photon_tree_(device, "photon_tree", photonCapacity(device, settings.photon_capacity)),
+      caustic_tree_(device, "caustic_tree",
+                    photonCapacity(device, uint64_t(settings.caustic_photons) * kCausticBounces)),
+      cut_(device, scene, photonCapacity(device, settings.photon_capacity)),
+      samples_(device, width, height, settings.sample_count),
       gather_(device, scene, settings.sample_count, settings.gather_rays), interpolate_(device, settings.sample_count),
       glossy_(device, scene, width * height), caustics_(device, scene), views_(device, scene, width * height)
 {
-    const gpu::SceneInfo& info = scene.info();
-    const float x = info.bounds_max.x - info.bounds_min.x, y = info.bounds_max.y - info.bounds_min.y;
-    const float z = info.bounds_max.z - info.bounds_min.z;
-    diagonal_ = std::sqrt(x * x + y * y + z * z);
-    longest_side_ = std::max({x, y, z, 1e-20f});
     if (GuideStage::helps(scene))
         guide_.emplace(device, scene, settings.photon_count);
     if (settings.denoise_passes > 0 && (direct_.isNoisy() || has_specular_))
@@ -100,7 +108,10 @@ GlobalIllumination::GlobalIllumination(const Device& device, const SceneGpu& sce
 const Buffer& GlobalIllumination::record(Recorder& rec, const RayStage& rays, const gpu::CameraParams& camera,
                                          const Settings& settings, bool moved)
 {
-    const auto primary = primary_.record(rec, rays, {.camera = camera, .specular_depth = settings.specular_depth});
+    gpu::CameraParams placement = camera;
+    placement.seed = placement_seed_.value_or(camera.seed);
+    const auto primary = primary_.record(rec, rays, {.camera = placement, .specular_depth = settings.specular_depth});
+    view_scale_.record(rec, primary.points, width_ * height_, camera);
     const Frame frame{.rec = rec,
                       .rays = rays,
                       .camera = camera,
@@ -111,6 +122,7 @@ const Buffer& GlobalIllumination::record(Recorder& rec, const RayStage& rays, co
                       .pixel_count = width_ * height_,
                       .index = camera.first_sample,
                       .seed = traceSeed(camera.seed, camera.first_sample, gpu::kTermIndirect),
+                      .placement_seed = traceSeed(placement.seed, camera.first_sample, gpu::kTermIndirect),
                       .moved = moved};
     if (!frame.shows(gpu::kTermEmission))
         rec.clear(frame.radiance);
@@ -199,8 +211,6 @@ void GlobalIllumination::recordDirect(const Frame& frame) const
 PhotonStage::Input GlobalIllumination::photonInput(const Frame& frame) const
 {
     return {.path_count = frame.settings.photon_count,
-            .bounce_limit = frame.settings.photon_bounces,
-            .specular_depth = chainDepth(frame.settings),
             .first_path = frame.index * frame.settings.photon_count,
             .seed = frame.camera.seed,
             .guide = guide_ ? &*guide_ : nullptr};
@@ -208,10 +218,9 @@ PhotonStage::Input GlobalIllumination::photonInput(const Frame& frame) const
 
 PhotonStage::Output GlobalIllumination::emitPhotons(const Frame& frame)
 {
-    const PhotonStage::Input in = photonInput(frame);
-    const PhotonStage::Output stored = photons_.record(frame.rec, frame.rays, in);
+    const PhotonStage::Output stored = photons_.record(frame.rec, frame.rays, photonInput(frame));
     if (guide_)
-        guide_->learn(frame.rec, stored.photons, stored.flags, in.path_count, in.bounce_limit);
+        guide_->learn(frame.rec, stored);
     return stored;
 }
 
@@ -240,7 +249,7 @@ bool GlobalIllumination::isThere(const Frame& frame, std::optional<MapOrigin>& m
 bool GlobalIllumination::isFar(const Frame& frame) const
 {
     const gpu::vec3 a = frame.camera.position, b = map_camera_;
-    return guide_ && std::hypot(a.x - b.x, a.y - b.y, a.z - b.z) > kGuideReach * diagonal_;
+    return guide_ && std::hypot(a.x - b.x, a.y - b.y, a.z - b.z) > kGuideReach * view_scale_.lastDistance();
 }
 
 PhotonTreeStage::Output GlobalIllumination::recordPhotons(const Frame& frame)
@@ -259,7 +268,7 @@ PhotonTreeStage::Output GlobalIllumination::recordPhotons(const Frame& frame)
         return emitPhotons(frame);
     }();
     const auto scope = frame.rec.scope("photon tree");
-    return photon_tree_.record(frame.rec, frame.rays, stored);
+    return photon_tree_.record(frame.rec, stored);
 }
 
 CutStage::Output GlobalIllumination::recordCut(const Frame& frame, const PhotonTreeStage::Output& map)
@@ -271,10 +280,11 @@ CutStage::Output GlobalIllumination::recordCut(const Frame& frame, const PhotonT
                              .iterations = settings.cut_iterations,
                              .difference = settings.cut_difference,
                              .photon_count = settings.density_photons,
-                             .radius = shrunkRadius(settings.density_radius * diagonal_, frame.index),
+                             .radius = shrunkRadius(settings.density_radius, frame.index),
                              .shrink = shrink,
                              .fewest = std::max(uint32_t(gpu::kCutFewest * shrink * shrink), 1u),
                              .probes = settings.cut_probes,
+                             .rim_probes = kRimProbes,
                              .seed = frame.seed};
     if (made_cut_ == in)
         return cut_.output();
@@ -301,21 +311,23 @@ SamplesStage::Input GlobalIllumination::samplesInput(const Frame& frame, uint32_
             .mode = SamplesMode(settings.samples_mode),
             .budget = settings.sample_count,
             .iterations = settings.sample_iterations,
-            .alpha = settings.sample_alpha * 2 / longest_side_,
+            .alpha = settings.sample_alpha,
             .reach = settings.sample_reach,
-            .seed = frame.seed,
+            .seed = frame.placement_seed,
             .age = age};
 }
 
 GatherStage::Input GlobalIllumination::gatherInput(const Frame& frame) const
 {
     const Settings& settings = frame.settings;
+    SamplesStage::Input placed = samplesInput(frame, sample_age_);
+    placed.seed = frame.seed;
     return {.mode = CutMode(settings.cut_mode),
             .ray_count = settings.gather_rays,
             .specular_depth = chainDepth(settings),
             .photon_count = settings.density_photons,
-            .radius = (settings.cut_mode == gpu::kCutKnn ? settings.density_radius : kSearchRadius) * diagonal_,
-            .seed = samplesInput(frame, sample_age_).frameSeed(),
+            .radius = settings.density_radius,
+            .seed = placed.frameSeed(),
             .by_direction = reflectsByHarmonics(frame)};
 }
 
@@ -343,8 +355,7 @@ void GlobalIllumination::recordIndirect(const Frame& frame, const InterpolateSta
                          .radiance = frame.radiance,
                          .point_count = frame.pixel_count,
                          .width = width_,
-                         .alpha = frame.settings.sample_alpha * 2 / longest_side_,
-                         .radius = kSearchRadius * diagonal_,
+                         .alpha = frame.settings.sample_alpha,
                          .white = frame.settings.view == gpu::kViewIrradiance});
 }
 
@@ -406,18 +417,16 @@ void GlobalIllumination::recordCaustics(const Frame& frame)
     // Without mirrors and glass to aim at there are only the faint reflections of smooth layers: few photons will do.
     const uint32_t path_count = has_caustic_targets_ ? settings.caustic_photons : settings.caustic_photons / 8;
     const PhotonStage::Input in{.path_count = path_count,
-                                .bounce_limit = kCausticBounces,
-                                .specular_depth = chainDepth(settings),
                                 .first_path = frame.index * path_count,
                                 .seed = frame.camera.seed + gpu::kTermCaustics};
     if (!isThere(frame, caustic_map_, in))
-        caustic_tree_.record(frame.rec, frame.rays, caustic_photons_.record(frame.rec, frame.rays, in));
+        caustic_tree_.record(frame.rec, caustic_photons_.record(frame.rec, frame.rays, in));
     caustics_.record(frame.rec, caustic_tree_.output(),
                      {.points = frame.points,
                       .radiance = frame.radiance,
                       .point_count = frame.pixel_count,
                       .photon_count = settings.caustic_density_photons,
-                      .radius = shrunkRadius(settings.caustic_radius * diagonal_, frame.index)});
+                      .radius = shrunkRadius(settings.caustic_radius, frame.index)});
 }
 
 void GlobalIllumination::recordView(const Frame& frame) const

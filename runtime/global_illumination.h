@@ -10,6 +10,7 @@
 #include "runtime/stages/guide.h"
 #include "runtime/stages/interpolate.h"
 #include "runtime/stages/primary.h"
+#include "runtime/stages/view_scale.h"
 #include "runtime/stages/views.h"
 
 #include <optional>
@@ -18,7 +19,7 @@ class GlobalIllumination
 {
 public:
     /// @return kDevice naming the settings whose product needs a larger buffer than `range` bytes
-    static Status checkCounts(uint64_t range, const Settings& settings);
+    static Status checkCounts(const VkPhysicalDeviceLimits& limits, uint64_t range, const Settings& settings);
 
     /// Allocates for pictures of width x height pixels and for the counts in `settings`; later settings may ask for
     /// fewer photons, samples and rays, not for more.
@@ -33,8 +34,17 @@ public:
     /// @param moved since the last record(), which this one follows; false: nothing is known of what was there before
     const Buffer& record(Recorder& rec, const RayStage& rays, const gpu::CameraParams& camera, const Settings& settings,
                          bool moved = false);
+    /// What the photon map of the last frame holds, nothing where it wanted none; waits for the device.
+    gpu::PhotonStore photonStore(const Device& device) const
+    {
+        return global_map_ ? device.download<gpu::PhotonStore>(photons_.store(), 1)[0] : gpu::PhotonStore{};
+    }
     /// Of the last frame; waits for the device.
     std::vector<gpu::Sample> irradianceSamples(const Device& device) const { return samples_.download(device); }
+    uint32_t cutNodeCount(const Device& device) const { return cut_.nodeCount(device); }
+    /// From now on shading points and irradiance samples are those of that seed, whatever the frame's: so that what is
+    /// gathered there can be compared.
+    void placeSamplesBy(uint32_t seed) { placement_seed_ = seed; }
 
 private:
     struct Frame;
@@ -72,9 +82,9 @@ private:
 
     const SceneGpu& scene_;
     uint32_t width_, height_;
-    float diagonal_, longest_side_; // of the scene, metres
     bool has_specular_, reflects_roughly_, has_caustic_targets_, has_mirrors_;
     PrimaryStage primary_;
+    ViewScaleStage view_scale_;
     DirectStage direct_;
     std::optional<GuideStage> guide_; // where it helps
     PhotonStage photons_, caustic_photons_;
@@ -101,4 +111,5 @@ private:
     uint32_t sampleAge(const Frame& frame);
     std::optional<SamplesOrigin> last_samples_; // of the last frame, where it was the first of its picture
     uint32_t sample_age_ = 0;                   // frames since all samples were new
+    std::optional<uint32_t> placement_seed_;    // of placeSamplesBy()
 };

@@ -88,6 +88,12 @@ Status writeResults(const PlayerOptions& options, const OpenedScene& opened, Ren
     statistics.device_bytes = opened.device->allocatedBytes();
     statistics.sample_count = renderer.sampleCount();
     statistics.non_finite_samples = renderer.nonFiniteCount(*opened.device);
+    if (const auto store = renderer.photonStore(*opened.device); store && store->photon_count > 0)
+    {
+        statistics.photons = store->photon_count;
+        statistics.photon_paths = store->path_count;
+        statistics.photon_paths_asked = settings.photon_count;
+    }
     fmt::print(stderr, "{}\n", statistics.summary());
     if (!options.output.empty())
         if (const Status status = capture(options.output, renderer, *opened.device, *opened.scene, settings); !status)

@@ -27,7 +27,7 @@ Status Renderer::checkSize(const Device& device, uint32_t width, uint32_t height
         std::min<uint64_t>(device.limits().maxStorageBufferRange, device.limits().maxTexelBufferElements * kTexelBytes);
     const uint64_t most = range / kLargestPixelBytes;
     if (uint64_t(width) * height <= most)
-        return mode == Mode::kGi ? GlobalIllumination::checkCounts(range, settings) : Success{};
+        return mode == Mode::kGi ? GlobalIllumination::checkCounts(device.limits(), range, settings) : Success{};
     return Error{ExitCode::kDevice, fmt::format("a picture of {}x{} is too large for {}, which takes {:.1f} million pixels", width, height,
                                                 device.name(), double(most) * 1e-6)};
 }

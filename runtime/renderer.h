@@ -50,8 +50,17 @@ public:
     std::vector<gpu::vec3> picture(const Device& device) const;
     /// Samples left out because they were NaN or infinite.
     uint32_t nonFiniteCount(const Device& device) const;
+    /// What the photon map of the last frame in Mode::kGi holds; waits for the device.
+    std::optional<gpu::PhotonStore> photonStore(const Device& device) const
+    {
+        return gi_ ? std::optional(gi_->photonStore(device)) : std::nullopt;
+    }
     /// The irradiance samples of the last frame in Mode::kGi; waits for the device.
     std::vector<gpu::Sample> irradianceSamples(const Device& device) const { return gi_->irradianceSamples(device); }
+    /// Nodes of the last frame's illumination cut in Mode::kGi, but for cut.mode knn; waits for the device.
+    uint32_t cutNodeCount(const Device& device) const { return gi_->cutNodeCount(device); }
+    /// In Mode::kGi: from now on shading points and irradiance samples are those of that seed, whatever the frame's.
+    void placeSamplesBy(uint32_t seed) { gi_->placeSamplesBy(seed); }
     /// Counts the rays of frames recorded from now on; null ends that.
     void countRays(RayTally* tally) { rays_.countInto(tally); }
 

@@ -1,8 +1,10 @@
 #include "runtime/scene_gpu.h"
 
 #include "shaders/gather/harmonics.h"
+#include "shaders/view_scale/view_scale.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace
 {
@@ -63,6 +65,13 @@ uint32_t sceneFeatures(const package::Package& package)
                                                          : gpu::kFeaturePunctualLights;
     return features;
 }
+gpu::ViewScale wholeScene(const gpu::SceneInfo& info)
+{
+    const gpu::vec3 low = info.bounds_min, high = info.bounds_max;
+    return {.focus = {0.5f * (low.x + high.x), 0.5f * (low.y + high.y), 0.5f * (low.z + high.z)},
+            .distance = std::hypot(high.x - low.x, high.y - low.y, high.z - low.z)};
+}
+
 bool isRough(const gpu::Material& material)
 {
     return material.roughness > gpu::kHarmonicsFrom && (material.specular > 0 || material.metallic > 0);
@@ -106,8 +115,11 @@ Result<std::unique_ptr<SceneGpu>> SceneGpu::create(const Device& device, const p
     if (too_large)
         return *too_large;
     scene->info_ = sceneInfo(package);
+    const gpu::ViewScale whole = wholeScene(scene->info_); // until a picture is drawn
+    scene->buffers_.push_back(device.upload("scene.view_scale", std::span(&whole, 1)));
     scene->info_buffer_ = device.upload("scene.info", std::span<const gpu::SceneInfo>(&scene->info_, 1));
-    scene->constants_ = {sceneFeatures(package), package.meta().texture_pages()->size()};
+    scene->features_ = sceneFeatures(package);
+    scene->constants_ = {{{"kSceneFeatures", scene->features_}, {"kUsedTexturePages", package.meta().texture_pages()->size()}}};
     scene->reflects_roughly_ = std::ranges::any_of(package.materials(), isRough);
     scene->createImages(package);
     scene->createDescriptorSet();
@@ -195,9 +207,13 @@ void SceneGpu::createDescriptorSet()
                                                .pSetLayouts = &layout};
     vulkanCheck(vkAllocateDescriptorSets(device_.handle(), &allocate, &set_));
 
-    std::vector<VkDescriptorBufferInfo> buffers{{info_buffer_.handle(), 0, VK_WHOLE_SIZE}};
+    static_assert(gpu::kSceneInfoBinding == 0 && gpu::kBvhNodesBinding == 1);
+    bound_ = {&info_buffer_};
     for (const Buffer& buffer : buffers_)
-        buffers.push_back({buffer.handle(), 0, VK_WHOLE_SIZE});
+        bound_.push_back(&buffer);
+    std::vector<VkDescriptorBufferInfo> buffers;
+    for (const Buffer* buffer : bound_)
+        buffers.push_back({buffer->handle(), 0, VK_WHOLE_SIZE});
     std::vector<VkDescriptorImageInfo> images;
     for (const Image& page : pages_)
         images.push_back({texture_sampler_, page.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL});

@@ -27,16 +27,18 @@ public:
     SceneGpu(const SceneGpu&) = delete;
     SceneGpu& operator=(const SceneGpu&) = delete;
 
-    VkDescriptorSet descriptorSet() const { return set_; }
+    SceneSet descriptorSet() const { return {.set = set_, .buffers = bound_}; }
     const gpu::SceneInfo& info() const { return info_; }
     /// Specialization constants of every kernel that reads the scene: features, texture pages in use (lib/scene.glsl).
-    std::span<const uint32_t> constants() const { return constants_; }
+    SharedConstants constants() const { return SharedConstants(constants_); }
     /// Whether it has any of these kFeature*.
-    bool hasFeature(uint32_t features) const { return (constants_[0] & features) != 0; }
+    bool hasFeature(uint32_t features) const { return (features_ & features) != 0; }
     /// Some opaque material reflects so roughly that spherical harmonics can stand for rays (shaders/gather/harmonics.h).
     bool reflectsRoughly() const { return reflects_roughly_; }
     /// Replaces light `index` from the next kernel of `rec` on; with the kind and pmf it has, on which other tables rest.
     void setLight(Recorder& rec, uint32_t index, const gpu::Light& light);
+    /// gpu::ViewScale, as every kernel sees it: of the whole scene until a ViewScaleStage sets it.
+    const Buffer& viewScale() const { return buffers_.back(); }
     /// Grows whenever a light is replaced: what was made under another version is out of date.
     uint64_t lightsVersion() const { return lights_version_; }
     /// By light index.
@@ -53,10 +55,12 @@ private:
     gpu::SceneInfo info_{};
     std::vector<LightShare> light_shares_;
     uint64_t lights_version_ = 0;
-    std::array<uint32_t, 2> constants_{};
+    uint32_t features_ = 0; // kFeature*
+    std::array<Constant, 2> constants_{};
     bool reflects_roughly_ = false;
     Buffer info_buffer_;
     std::vector<Buffer> buffers_; // by binding, kBvhNodesBinding first
+    std::vector<const Buffer*> bound_; // by binding
     std::vector<Image> pages_;    // kTexturePageCount of them, unused ones 1 x 1 white
     Image environment_;
     VkSampler texture_sampler_ = VK_NULL_HANDLE, environment_sampler_ = VK_NULL_HANDLE;

@@ -1,6 +1,7 @@
 // Every knob of the renderer once: name, default, unit, range, help. Feeds --set, --help and the user interface.
 #pragma once
 #include "format/result.h"
+#include "runtime/choices.h"
 
 #include <cstdint>
 #include <span>
@@ -8,43 +9,37 @@
 #include <string_view>
 #include <variant>
 
-enum class GlossyMode : uint32_t
-{
-    kRays,      // of every lobe
-    kHarmonics, // of rough lobes by spherical harmonics in the first frame of a picture, by rays in those after it
-};
-
 struct Settings
 {
     uint32_t specular_depth = 8;
     uint32_t direct_samples = 1;
     uint32_t direct_candidates = 8;
     uint32_t photon_count = 50000; // paths
-    uint32_t photon_bounces = 12;
+    uint32_t photon_capacity = 400000;
     uint32_t density_photons = 16;
-    float density_radius = 0.03f; // of the scene's diagonal
-    uint32_t cut_mode = 2; // CutMode
+    float density_radius = 0.07f; // of the distance from the viewer
+    uint32_t cut_mode = gpu::kCutRefined;
     uint32_t cut_probes = 16;
-    uint32_t cut_iterations = 3;
+    uint32_t cut_iterations = 0;
     float cut_difference = 0.2f;
-    uint32_t samples_mode = 2; // SamplesMode
+    uint32_t samples_mode = uint32_t(SamplesMode::kKmeans);
     uint32_t sample_count = 4096;
     uint32_t sample_iterations = 1;
     float sample_alpha = 10;
     float sample_reach = 4;
     uint32_t gather_rays = 256;
-    uint32_t glossy_mode = 1; // GlossyMode
+    uint32_t glossy_mode = uint32_t(GlossyMode::kHarmonics);
     uint32_t caustic_photons = 100000; // paths
     uint32_t caustic_density_photons = 200;
-    float caustic_radius = 0.01f; // of the scene's diagonal
+    float caustic_radius = 0.03f; // of the distance from the viewer
     uint32_t denoise_passes = 3;
     uint32_t reuse_photons = 1; // 0 or 1
     uint32_t reuse_samples = 0; // 0 or 1
     uint32_t reference_depth = 64;
-    uint32_t term = 0; // gpu::kTerm*
-    uint32_t view = 0; // gpu::kView*
+    uint32_t term = gpu::kTermAll;
+    uint32_t view = gpu::kViewNone;
     float exposure = 0;
-    uint32_t tonemap = 2; // Tonemap
+    uint32_t tonemap = gpu::kTonemapAgx;
 
     bool operator==(const Settings&) const = default;
 };
@@ -59,10 +54,13 @@ struct Knob
     double least, most;
     std::string_view unit; // "" for counts
     std::string_view help;
-    std::string_view choices = ""; // comma-separated names of the values 0, 1, ... where the knob is a choice
+    std::span<const Choice> choices = {}; // of least..most, where the knob is a choice
 };
 
 std::span<const Knob> knobs();
+
+/// The names of its choices with `separator` in between.
+std::string choiceNames(const Knob& knob, std::string_view separator);
 
 /// A preset with assignments applied in order. @return kUsage naming the valid names or the range
 Result<Settings> makeSettings(std::string_view preset, std::span<const std::string> assignments);

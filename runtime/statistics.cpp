@@ -53,6 +53,9 @@ std::string Statistics::summary() const
                                    sample_count, first_submit_ms, pipeline_ms);
     for (const StageSummary& stage : summarise(frames))
         text += fmt::format("\n  {:<12} p50 {:9.3f} ms  p95 {:9.3f} ms", stage.name, stage.p50, stage.p95);
+    if (photon_paths < photon_paths_asked)
+        text += fmt::format("\n  the photon map is full: its {} photons are of {} paths, not of {}; see photons.capacity", photons, photon_paths,
+                            photon_paths_asked);
     if (non_finite_samples > 0)
         text += fmt::format("\n  {} samples were not finite and are left out", non_finite_samples);
     return text;
@@ -62,9 +65,10 @@ Status Statistics::writeJson(const std::filesystem::path& path) const
 {
     std::string text = fmt::format("{{\n  \"schema\": \"lumicut-play-stats/1\",\n  \"device\": {},\n  \"open_ms\": {:.3f},\n"
                                    "  \"first_submit_ms\": {:.3f},\n  \"pipeline_ms\": {:.3f},\n  \"device_bytes\": {},\n"
-                                   "  \"samples_per_pixel\": {},\n  \"non_finite_samples\": {},\n  \"submissions\": {},\n  \"stages\": [",
+                                   "  \"samples_per_pixel\": {},\n  \"non_finite_samples\": {},\n  \"photons\": {},\n"
+                                   "  \"photon_paths\": {},\n  \"photon_paths_asked\": {},\n  \"submissions\": {},\n  \"stages\": [",
                                    jsonString(device), open_ms, first_submit_ms, pipeline_ms, device_bytes, sample_count,
-                                   non_finite_samples, frames.size());
+                                   non_finite_samples, photons, photon_paths, photon_paths_asked, frames.size());
     const auto stages = summarise(frames);
     for (size_t i = 0; i < stages.size(); ++i)
         text += fmt::format("{}\n    {{\"name\": {}, \"p50_ms\": {:.4f}, \"p95_ms\": {:.4f}}}", i ? "," : "", jsonString(stages[i].name),

@@ -15,6 +15,9 @@ struct Statistics
     uint64_t device_bytes = 0;
     uint32_t sample_count = 0; // a pixel
     uint32_t non_finite_samples = 0;
+    uint32_t photon_paths = 0;       // of the last frame's map, whole in it
+    uint32_t photon_paths_asked = 0; // more than those where the store was full
+    uint32_t photons = 0;            // that they left
     std::vector<std::vector<StageTime>> frames; // per submission
 
     double elapsedMs() const;

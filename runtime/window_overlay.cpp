@@ -42,7 +42,7 @@ WindowOverlay::WindowOverlay(const Window& window, const Instance& instance, con
         .CheckVkResultFn = mustSucceed,
     };
     ImGui_ImplVulkan_Init(&info, swapchain.overlayPass());
-    rec.begin(VK_NULL_HANDLE);
+    rec.begin();
     ImGui_ImplVulkan_CreateFontsTexture(rec.commands());
     rec.submitAndWait();
     ImGui_ImplVulkan_DestroyFontUploadObjects();

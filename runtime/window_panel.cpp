@@ -48,9 +48,7 @@ bool editKnob(const Knob& knob, uint32_t& value)
         return ImGui::SliderScalar(name.c_str(), ImGuiDataType_U32, &value, &least, &most, nullptr,
                                    ImGuiSliderFlags_AlwaysClamp | (most > 100 ? ImGuiSliderFlags_Logarithmic : 0));
     }
-    std::string items(knob.choices); // ImGui wants each name ended by a zero, and the list by one more
-    std::ranges::replace(items, ',', '\0');
-    items.push_back('\0');
+    const std::string items = choiceNames(knob, std::string_view("\0", 1)) + '\0'; // ImGui wants each name ended by a zero, and the list by one more
     int index = int(value);
     const bool changed = ImGui::Combo(name.c_str(), &index, items.c_str());
     value = uint32_t(index);

@@ -1,6 +1,7 @@
 // Build tool: turns SPIR-V files and spirv-cross's JSON reflection of them into one C++ file of KernelCode tables.
-// embed_kernels OUT.cpp NAME SPV JSON [NAME SPV JSON ...], sorted by name by the caller.
-#include <nlohmann/json.hpp>
+// embed_kernels OUT.cpp SOURCE_ROOT FOLDER FUNCTION NAME SPV JSON [NAME SPV JSON ...], sorted by name by the caller; the kernels'
+// sources lie in FOLDER below SOURCE_ROOT, and FUNCTION() returns their tables.
+#include "shaders/shared_structs.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -14,29 +15,23 @@
 
 namespace
 {
+struct Module
+{
+    std::string name;
+    std::vector<uint32_t> words;
+    nlohmann::json reflection;
+};
+
+[[noreturn]] void fail(const std::string& kernel, const std::string& sentence)
+{
+    std::cerr << "embed_kernels: " << kernel << ": " << sentence << "\n";
+    std::exit(1);
+}
+
 std::string identifier(std::string name)
 {
     std::replace(name.begin(), name.end(), '/', '_');
     return name;
-}
-
-/// Bytes of a push-constant block: the end of its last member. Only the types our Params structs use are known.
-uint32_t structBytes(const nlohmann::json& types, const std::string& type)
-{
-    static const std::vector<std::pair<std::string, uint32_t>> kSizes{
-        {"float", 4}, {"uint", 4}, {"int", 4}, {"vec2", 8}, {"uvec2", 8}, {"vec3", 12}, {"uvec3", 12}, {"vec4", 16}, {"uvec4", 16}, {"mat4", 64}};
-    for (const auto& [name, bytes] : kSizes)
-        if (name == type)
-            return bytes;
-    uint32_t end = 0;
-    for (const auto& member : types.at(type).at("members"))
-    {
-        uint32_t bytes = structBytes(types, member.at("type"));
-        if (member.contains("array"))
-            bytes = member.at("array_stride").get<uint32_t>() * member.at("array").at(0).get<uint32_t>();
-        end = std::max(end, member.at("offset").get<uint32_t>() + bytes);
-    }
-    return end;
 }
 
 std::vector<uint32_t> readWords(const std::string& path)
@@ -49,8 +44,9 @@ std::vector<uint32_t> readWords(const std::string& path)
 }
 
 /// local_size_x. spirv-cross does not know LocalSizeId, which glslang emits for sizes given by a constant.
-uint32_t groupSize(const std::vector<uint32_t>& words)
+uint32_t groupSize(const Module& module)
 {
+    const std::vector<uint32_t>& words = module.words;
     constexpr uint32_t kExecutionMode = 16, kExecutionModeId = 331, kConstant = 43, kLocalSize = 17, kLocalSizeId = 38;
     uint32_t size_id = 0;
     for (size_t i = 5; i < words.size(); i += words[i] >> 16)
@@ -63,16 +59,12 @@ uint32_t groupSize(const std::vector<uint32_t>& words)
         if (op == kConstant && size_id != 0 && words[i + 2] == size_id)
             return words[i + 3];
     }
-    std::cerr << "embed_kernels: a kernel without a group size\n";
-    std::exit(1);
+    fail(module.name, "it has no group size");
 }
 
-void writeKernel(std::ostream& out, const std::string& name, const std::vector<uint32_t>& words, const nlohmann::json& reflection)
+/// Set 1: what the caller binds.
+void writeBlocks(std::ostream& out, const nlohmann::json& reflection)
 {
-    out << "constexpr uint32_t k_" << identifier(name) << "_words[]{";
-    for (size_t i = 0; i < words.size(); ++i)
-        out << (i % 16 == 0 ? "\n" : "") << words[i] << "u,";
-    out << "};\nconstexpr KernelBlock k_" << identifier(name) << "_blocks[]{\n";
     for (const auto& block : reflection.value("ssbos", nlohmann::json::array()))
         if (block.at("set") == 1)
             out << "    {\"" << block.at("name").get<std::string>() << "\", " << block.at("binding") << ", "
@@ -81,33 +73,80 @@ void writeKernel(std::ostream& out, const std::string& name, const std::vector<u
     for (const auto& image : reflection.value("separate_images", nlohmann::json::array()))
         if (image.at("set") == 1)
             out << "    {\"" << image.at("name").get<std::string>() << "\", " << image.at("binding") << ", true, false, true},\n";
-    out << "    {\"\", 0, false, false, false}};\n"; // never empty: C++ has no arrays of length 0
 }
 
-void writeEntry(std::ostream& out, const std::string& name, const std::vector<uint32_t>& words, const nlohmann::json& reflection)
+/// Set 0: buffers of the scene, which kernels only read. Its images never change.
+void writeSceneBindings(std::ostream& out, const Module& module)
 {
-    const auto& push = reflection.value("push_constants", nlohmann::json::array());
-    const uint32_t push_bytes = push.empty() ? 0 : structBytes(reflection.at("types"), push.at(0).at("type"));
-    const std::string id = identifier(name);
-    out << "    {\"" << name << "\", k_" << id << "_words, {k_" << id << "_blocks, std::size(k_" << id << "_blocks) - 1}, " << push_bytes
-        << ", " << groupSize(words) << "},\n";
+    for (const char* kind : {"ubos", "ssbos", "separate_images"})
+        for (const auto& block : module.reflection.value(kind, nlohmann::json::array()))
+            if (block.at("set") == 0)
+            {
+                if (kind == std::string("ssbos") && !block.value("readonly", false))
+                    fail(module.name, "block '" + block.at("name").get<std::string>() + "' of the scene must be readonly");
+                out << block.at("binding") << ", ";
+            }
+}
+
+void writeConstants(std::ostream& out, const Module& module)
+{
+    for (const auto& constant : module.reflection.value("specialization_constants", nlohmann::json::array()))
+    {
+        const std::string name = constant.value("name", "");
+        if (name.empty())
+            fail(module.name, "specialization constant " + constant.at("id").dump() + " has no name");
+        out << "    {\"" << name << "\", " << constant.at("id") << "},\n";
+    }
+}
+
+// Each array ends with an element that is left out again: C++ has no arrays of length 0.
+void writeKernel(std::ostream& out, const Module& module)
+{
+    const std::string id = identifier(module.name);
+    out << "constexpr uint32_t k_" << id << "_words[]{";
+    for (size_t i = 0; i < module.words.size(); ++i)
+        out << (i % 16 == 0 ? "\n" : "") << module.words[i] << "u,";
+    out << "};\nconstexpr KernelBlock k_" << id << "_blocks[]{\n";
+    writeBlocks(out, module.reflection);
+    out << "    {\"\", 0, false, false, false}};\nconstexpr uint32_t k_" << id << "_scene[]{";
+    writeSceneBindings(out, module);
+    out << "0};\nconstexpr KernelConstant k_" << id << "_constants[]{\n";
+    writeConstants(out, module);
+    out << "    {\"\", 0}};\n";
+}
+
+void writeEntry(std::ostream& out, const Module& module)
+{
+    const auto& push = module.reflection.value("push_constants", nlohmann::json::array());
+    const uint32_t push_bytes = push.empty() ? 0 : typeBytes(module.reflection.at("types"), push.at(0).at("type"));
+    out << "    {\"" << module.name << "\", k_" << identifier(module.name) << "_words, ";
+    for (const char* part : {"_blocks", "_scene", "_constants"})
+        out << "allButLast(k_" << identifier(module.name) << part << "), ";
+    out << push_bytes << ", " << groupSize(module) << "},\n";
 }
 } // namespace
 
 int main(int argc, char** argv)
 {
-    std::ofstream out(argv[1]);
-    out << "// Generated by embed_kernels; do not edit.\n#include \"runtime/gpu/kernel.h\"\n#include <iterator>\nnamespace {\n";
-    struct Module { std::string name; std::vector<uint32_t> words; nlohmann::json reflection; };
     std::vector<Module> modules;
-    for (int i = 2; i + 2 < argc; i += 3)
+    SharedStructs structs(argv[2]);
+    for (int i = 5; i + 2 < argc; i += 3)
+    {
         modules.push_back({argv[i], readWords(argv[i + 1]), nlohmann::json::parse(std::ifstream(argv[i + 2]))});
+        if (const std::string error = structs.add(std::string(argv[3]) + "/" + modules.back().name + ".comp", modules.back().reflection); !error.empty())
+            fail(modules.back().name, error);
+    }
+    std::ofstream out(argv[1]);
+    out << "// Generated by embed_kernels; do not edit.\n#include \"runtime/gpu/kernel.h\"\n";
+    structs.write(out);
+    out << "namespace {\ntemplate <typename T, size_t kCount>\n"
+           "constexpr std::span<const T> allButLast(const T (&array)[kCount]) { return {array, kCount - 1}; }\n";
     for (const Module& module : modules)
-        writeKernel(out, module.name, module.words, module.reflection);
+        writeKernel(out, module);
     out << "constexpr KernelCode kCodes[]{\n";
     for (const Module& module : modules)
-        writeEntry(out, module.name, module.words, module.reflection);
-    out << "};\n}\nstd::span<const KernelCode> kernelCodes() { return kCodes; }\n";
+        writeEntry(out, module);
+    out << "};\n}\nstd::span<const KernelCode> " << argv[4] << "();\nstd::span<const KernelCode> " << argv[4] << "() { return kCodes; }\n";
     out.close();
     return out ? 0 : 1;
 }

@@ -1,10 +1,11 @@
 #!/usr/bin/env bash
 # What each part of mode gi is worth: error of the first frame and GPU milliseconds side by side, one setting changed at a
-# time; then the illumination cut's lookups against full kNN: with these settings, and like against like, with the photons of
-# the method (100 an estimate) and without the light that the cut finds missing at edges and kNN does not (cut.probes=0).
+# time; then the illumination cut's lookups against full kNN and path tracing: with these settings, and like against like,
+# with the photons of the method (100 an estimate) and without the light that the cut finds missing at edges and kNN does not
+# (cut.probes=0).
 #   tools/ablation.sh [OPTION...] [OUTDIR]    OUTDIR: packages and references; default build/truth
 #     --quick            small pictures, references of 256 samples, small counts
-#     --scene NAME       cornell, caustics, atrium, hall or sponza; default atrium
+#     --scene NAME       of tools/bench/scenes.sh; default atrium
 #     --size WxH         default 320x180
 #     --spp N            samples a pixel of the reference; default 4096
 #     --seeds N          first frames to average over; default 4
@@ -43,12 +44,14 @@ done
 mkdir -p "$out"
 build_programs
 
+truth_rays=4096
 rows=("")
 rows+=(cut.mode={knn,nearest,leaves,refined})
 rows+=(samples.mode={uniform,seeded,seeded+kmeans})
 rows+=(samples.iterations={0,2,3})
 rows+=(denoise.passes=0)
 if ((quick)); then
+    truth_rays=256
     common=(--set photons.count=20000 --set caustics.photons=20000 --set samples.count=1024 --set gather.rays=64 "${common[@]}")
     rows+=(samples.count={256,1024} gather.rays={16,64})
 else
@@ -90,9 +93,9 @@ for row in "" reuse.samples=off reuse.photons=off "reuse.photons=off reuse.sampl
 done
 
 echo
-"$bin/lumicut-bench" lookup "$package" --size "$size" --repeats "$seeds" ${common[@]+"${common[@]}"}
+"$bin/lumicut-bench" lookup "$package" --size "$size" --repeats "$seeds" --truth-rays "$truth_rays" ${common[@]+"${common[@]}"}
 echo
 echo "photons.nearest=100 cut.probes=0"
-"$bin/lumicut-bench" lookup "$package" --size "$size" --repeats "$seeds" ${common[@]+"${common[@]}"} \
+"$bin/lumicut-bench" lookup "$package" --size "$size" --repeats "$seeds" --truth-rays "$truth_rays" ${common[@]+"${common[@]}"} \
     --set photons.nearest=100 --set cut.probes=0
 echo "goals: refined <= 2 % mean error, >= 10 x faster than knn"

@@ -73,7 +73,7 @@ void Device::createLayouts()
     add(gpu::kSceneInfoBinding, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1);
     for (uint32_t b = gpu::kBvhNodesBinding; b <= gpu::kLightsBinding; ++b)
         add(b, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, 1);
-    for (uint32_t b = gpu::kTextureRefsBinding; b <= gpu::kCausticTargetsBinding; ++b)
+    for (uint32_t b = gpu::kTextureRefsBinding; b <= gpu::kViewScaleBinding; ++b)
         add(b, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1);
     add(gpu::kTexturePagesBinding, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, gpu::kTexturePageCount);
     add(gpu::kEnvironmentMapBinding, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 1);
@@ -159,18 +159,49 @@ Kernel::State::~State()
     vkDestroyDescriptorSetLayout(device, set_layout, nullptr);
 }
 
-Kernel Device::kernel(std::string_view name, std::span<const uint32_t> constants) const
+std::vector<Device::ConstantValue> Device::constantValues(const KernelCode& code, const SharedConstants& shared,
+                                                          std::initializer_list<Constant> constants)
+{
+    const auto find = [](const KernelCode& in, std::string_view name) { return std::ranges::find(in.constants, name, &KernelConstant::name); };
+    std::vector<ConstantValue> values;
+    for (const Constant& constant : constants)
+    {
+        const auto found = find(code, constant.name);
+        check(found != code.constants.end(), "{}: it uses no specialization constant '{}'", code.name, constant.name);
+        values.emplace_back(found->id, constant.value);
+    }
+    for (const Constant& constant : shared.list)
+    {
+        const auto found = find(code, constant.name);
+        if (found != code.constants.end())
+            values.emplace_back(found->id, constant.value);
+        else
+            check(std::ranges::any_of(kernelCodes(), [&](const KernelCode& other) { return find(other, constant.name) != other.constants.end(); }),
+                  "no kernel uses a specialization constant '{}'", constant.name);
+    }
+    std::ranges::sort(values);
+    check(std::ranges::adjacent_find(values, {}, &ConstantValue::first) == values.end(), "{}: a specialization constant is given twice", code.name);
+    return values;
+}
+
+Kernel Device::kernel(std::string_view name, const SharedConstants& shared, std::initializer_list<Constant> constants) const
 {
     const auto codes = kernelCodes();
     const auto code = std::ranges::find(codes, name, &KernelCode::name);
     check(code != codes.end(), "there is no kernel '{}'", name);
-    const auto [entry, added] = kernels_.try_emplace({std::string(name), {constants.begin(), constants.end()}});
+    return kernel(*code, shared, constants);
+}
+
+Kernel Device::kernel(const KernelCode& code, const SharedConstants& shared, std::initializer_list<Constant> constants) const
+{
+    const std::vector<ConstantValue> values = constantValues(code, shared, constants);
+    const auto [entry, added] = kernels_.try_emplace({std::string(code.name), values});
     if (added)
-        entry->second = createKernel(*code, constants);
+        entry->second = createKernel(code, values);
     return entry->second;
 }
 
-Kernel Device::createKernel(const KernelCode& code, std::span<const uint32_t> constants) const
+Kernel Device::createKernel(const KernelCode& code, std::span<const ConstantValue> constants) const
 {
     Kernel kernel;
     kernel.state_ = std::make_shared<Kernel::State>();
@@ -210,12 +241,16 @@ Kernel Device::createKernel(const KernelCode& code, std::span<const uint32_t> co
     VkShaderModule module;
     vulkanCheck(vkCreateShaderModule(device_, &module_info, nullptr, &module));
     std::vector<VkSpecializationMapEntry> entries;
-    for (uint32_t i = 0; i < constants.size(); ++i)
-        entries.push_back({.constantID = i, .offset = i * 4, .size = 4});
+    std::vector<uint32_t> values;
+    for (const auto& [id, value] : constants)
+    {
+        entries.push_back({.constantID = id, .offset = uint32_t(values.size() * sizeof(uint32_t)), .size = sizeof(uint32_t)});
+        values.push_back(value);
+    }
     const VkSpecializationInfo specialization{.mapEntryCount = uint32_t(entries.size()),
                                               .pMapEntries = entries.data(),
-                                              .dataSize = constants.size_bytes(),
-                                              .pData = constants.data()};
+                                              .dataSize = values.size() * sizeof(uint32_t),
+                                              .pData = values.data()};
     const VkComputePipelineCreateInfo info{
         .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
         .stage = {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,

@@ -7,6 +7,7 @@
 
 #include <cstring>
 #include <filesystem>
+#include <initializer_list>
 #include <map>
 #include <memory>
 #include <span>
@@ -24,8 +25,12 @@ public:
 
     /// "samples/assign" is shaders/samples/assign.comp. Aborts where there is no such kernel.
     /// A kernel asked for again with the same constants is the same one.
-    /// @param constants values of the kernel's specialization constants 0, 1, ...
-    Kernel kernel(std::string_view name, std::span<const uint32_t> constants = {}) const;
+    /// @param constants of the kernel; others keep the value in the shader. Aborts where the kernel does not use one of them.
+    Kernel kernel(std::string_view name, std::initializer_list<Constant> constants = {}) const { return kernel(name, SharedConstants(), constants); }
+    /// @param shared of which the kernel takes those it uses. Aborts where no kernel at all uses one of them.
+    Kernel kernel(std::string_view name, const SharedConstants& shared, std::initializer_list<Constant> constants = {}) const;
+    /// The same of a kernel that is not one of kernelCodes(); of another name than any of them.
+    Kernel kernel(const KernelCode& code, const SharedConstants& shared, std::initializer_list<Constant> constants = {}) const;
 
     /// What a word of new memory holds under validation: no number as a float, far too many as a count. Without this
     /// a kernel that reads what nothing wrote is right as long as the memory happens to be zero.
@@ -97,7 +102,10 @@ private:
     void createLayouts();
     void loadPipelineCache();
     void savePipelineCache() const;
-    Kernel createKernel(const KernelCode& code, std::span<const uint32_t> constants) const;
+    using ConstantValue = std::pair<uint32_t, uint32_t>; // id, value
+    static std::vector<ConstantValue> constantValues(const KernelCode& code, const SharedConstants& shared,
+                                                     std::initializer_list<Constant> constants);
+    Kernel createKernel(const KernelCode& code, std::span<const ConstantValue> constants) const;
     Buffer buffer(std::string_view name, uint64_t bytes, Placement placement) const;
     Buffer withTexels(Buffer buffer) const;
     Buffer uploadBytes(std::string_view name, std::span<const std::byte> data) const;
@@ -118,7 +126,7 @@ private:
     VkPipelineCache pipeline_cache_ = VK_NULL_HANDLE;
     std::filesystem::path pipeline_cache_path_;
     PFN_vkSetDebugUtilsObjectNameEXT set_name_ = nullptr;
-    mutable std::map<std::pair<std::string, std::vector<uint32_t>>, Kernel> kernels_; // by name and constants
+    mutable std::map<std::pair<std::string, std::vector<ConstantValue>>, Kernel> kernels_; // by name and constants
     mutable double pipeline_ms_ = 0;
     mutable uint64_t allocated_bytes_ = 0;
 };

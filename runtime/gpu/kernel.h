@@ -17,12 +17,36 @@ struct KernelBlock
     bool texels; // a usamplerBuffer: its buffer must have a texel view (Device::texelArray)
 };
 
+/// A specialization constant that a kernel uses.
+struct KernelConstant
+{
+    std::string_view name; // "kRun"
+    uint32_t id;
+};
+
+/// The value of a specialization constant; of a bool, 0 or 1.
+struct Constant
+{
+    std::string_view name;
+    uint32_t value;
+};
+
+/// Constants that many kernels are given, of which each takes those it uses. Does not own them.
+struct SharedConstants
+{
+    SharedConstants() = default;
+    explicit SharedConstants(std::span<const Constant> constants) : list(constants) {}
+    std::span<const Constant> list;
+};
+
 /// A compiled shader with its reflection, written by the build (shaders/CMakeLists.txt).
 struct KernelCode
 {
     std::string_view name; // "samples/assign"
     std::span<const uint32_t> words;
     std::span<const KernelBlock> blocks;
+    std::span<const uint32_t> scene_bindings; // buffers of descriptor set 0 that it reads
+    std::span<const KernelConstant> constants;
     uint32_t push_bytes;
     uint32_t group_size; // local_size_x; kernels are one-dimensional
 };

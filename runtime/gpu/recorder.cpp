@@ -1,5 +1,7 @@
 #include "runtime/gpu/recorder.h"
 
+#include "shaders/lib/queue.h"
+
 #include <algorithm>
 #include <array>
 
@@ -35,9 +37,10 @@ Recorder::~Recorder()
     vkDestroyCommandPool(device_.handle(), pool_, nullptr);
 }
 
-void Recorder::begin(VkDescriptorSet scene_set)
+void Recorder::begin(const SceneSet& scene)
 {
-    scene_set_ = scene_set;
+    scene_ = scene;
+    barrier_count_ = 0;
     scopes_.clear();
     query_count_ = 0;
     read_.clear();
@@ -87,6 +90,7 @@ void Recorder::barrier()
     const VkDependencyInfo info{
         .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO, .memoryBarrierCount = 1, .pMemoryBarriers = &memory};
     vkCmdPipelineBarrier2(commands_, &info);
+    ++barrier_count_;
     read_.clear();
     written_.clear();
 }
@@ -124,6 +128,12 @@ void Recorder::prepare(const Kernel& kernel, const void* params, size_t param_by
     std::array<VkWriteDescriptorSet, 32> writes;
     uint32_t count = 0;
     bool hazard = arguments && conflicts(*arguments, false);
+    for (const uint32_t binding : code.scene_bindings)
+    {
+        check(binding < scene_.buffers.size(), "{}: it reads binding {} of the scene, of {} given to begin()", code.name, binding,
+              scene_.buffers.size());
+        hazard |= conflicts(*scene_.buffers[binding], false);
+    }
     for (const Binding& binding : bindings)
     {
         const auto block = std::ranges::find(code.blocks, binding.block, &KernelBlock::name);
@@ -151,12 +161,14 @@ void Recorder::prepare(const Kernel& kernel, const void* params, size_t param_by
         const auto block = std::ranges::find(code.blocks, binding.block, &KernelBlock::name);
         note(binding.buffer, block->reads, block->writes);
     }
+    for (const uint32_t binding : code.scene_bindings)
+        note(*scene_.buffers[binding], true, false);
     if (arguments)
         note(*arguments, true, false);
 
     vkCmdBindPipeline(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.pipeline());
-    if (scene_set_)
-        vkCmdBindDescriptorSets(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.layout(), 0, 1, &scene_set_, 0, nullptr);
+    if (scene_.set)
+        vkCmdBindDescriptorSets(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.layout(), 0, 1, &scene_.set, 0, nullptr);
     if (count > 0)
         push_descriptors_(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.layout(), 1, count, writes.data());
     if (param_bytes > 0)
@@ -169,6 +181,17 @@ void Recorder::dispatch(const Kernel& kernel, uint32_t thread_count)
     check(groups <= device_.limits().maxComputeWorkGroupCount[0], "{}: {} groups", kernel.code().name, groups);
     if (groups > 0)
         vkCmdDispatch(commands_, groups, 1, 1);
+}
+
+void Recorder::dispatchIndirect(const Kernel& kernel, const Buffer& size)
+{
+    const KernelCode& code = kernel.code();
+    check(size.size() >= sizeof(gpu::QueueSize), "{}: buffer '{}' of {} bytes is no QueueSize", code.name, size.name(), size.size());
+    uint32_t row = 0;
+    while (row < gpu::kQueueRows && gpu::queueGroupSize(row) != code.group_size)
+        ++row;
+    check(row < gpu::kQueueRows, "{}: a QueueSize has no dispatch for groups of {} threads", code.name, code.group_size);
+    vkCmdDispatchIndirect(commands_, size.handle(), offsetof(gpu::QueueSize, groups) + row * sizeof(gpu::uvec3));
 }
 
 void Recorder::fill(const Buffer& buffer, uint32_t word)
@@ -193,9 +216,10 @@ void Recorder::write(const Buffer& to, uint64_t offset, std::span<const std::byt
 {
     check(bytes.size() % 4 == 0 && bytes.size() <= 65536 && offset + bytes.size() <= to.size(), "{} bytes at {} of {} of {} bytes",
           bytes.size(), offset, to.name(), to.size());
-    barrier(); // kernels may be reading it through the scene set, which nobody has noted
+    if (conflicts(to, true))
+        barrier();
+    note(to, false, true);
     vkCmdUpdateBuffer(commands_, to.handle(), offset, bytes.size(), bytes.data());
-    barrier();
 }
 
 void Recorder::submit(VkSemaphore wait_for, VkSemaphore signal)

@@ -3,6 +3,7 @@
 #include "runtime/gpu/device.h"
 
 #include <initializer_list>
+#include <span>
 #include <string>
 #include <unordered_set>
 #include <vector>
@@ -11,6 +12,13 @@ struct Binding
 {
     std::string_view block; // the GLSL block name
     const Buffer& buffer;
+};
+
+/// Descriptor set 0 of every kernel, and the buffers in it by binding. Owns neither; images are never written.
+struct SceneSet
+{
+    VkDescriptorSet set = VK_NULL_HANDLE;
+    std::span<const Buffer* const> buffers = {};
 };
 
 /// What one named scope cost on the GPU.
@@ -43,8 +51,8 @@ public:
         Recorder& recorder_;
     };
 
-    /// Starts a command buffer; every kernel sees `scene_set` as descriptor set 0 (may be null for kernels without it).
-    void begin(VkDescriptorSet scene_set);
+    /// Starts a command buffer; every kernel sees `scene` as descriptor set 0. Kernels that read none can do without.
+    void begin(const SceneSet& scene = {});
     [[nodiscard]] Scope scope(std::string_view name);
     /// The innermost scope that is open, "" outside of any.
     std::string_view scopeName() const { return open_scopes_.empty() ? std::string_view() : scopes_[open_scopes_.back()].name; }
@@ -52,8 +60,7 @@ public:
     void clear(const Buffer& buffer) { fill(buffer, 0); }
     void fill(const Buffer& buffer, uint32_t word);
     void copy(const Buffer& from, const Buffer& to, uint64_t bytes, uint64_t to_offset = 0);
-    /// Writes at most 64 KiB, a multiple of 4 bytes, from the CPU. Also into a buffer of the scene set: what is recorded
-    /// afterwards sees it.
+    /// Writes at most 64 KiB, a multiple of 4 bytes, from the CPU; what is recorded afterwards sees it.
     void write(const Buffer& to, uint64_t offset, std::span<const std::byte> bytes);
 
     /// Runs `kernel` on at least `thread_count` threads. `params` must match the kernel's push constants in size, and
@@ -65,19 +72,20 @@ public:
         dispatch(kernel, thread_count);
     }
 
-    /// The same with the group count taken from `arguments` (VkDispatchIndirectCommand at byte `offset`).
+    /// The same with at least size.count threads. @param size gpu::QueueSize, which has groups of the kernel's size or aborts
     template <typename Params>
-    void runIndirect(const Kernel& kernel, const Buffer& arguments, uint64_t offset, const Params& params,
-                     std::initializer_list<Binding> bindings)
+    void runIndirect(const Kernel& kernel, const Buffer& size, const Params& params, std::initializer_list<Binding> bindings)
     {
-        prepare(kernel, &params, paramBytes<Params>(), bindings, &arguments);
-        vkCmdDispatchIndirect(commands_, arguments.handle(), offset);
+        prepare(kernel, &params, paramBytes<Params>(), bindings, &size);
+        dispatchIndirect(kernel, size);
     }
 
     /// Makes all writes so far visible to the CPU, submits and waits.
     /// @return the time of each scope, in order of first appearance
     std::vector<StageTime> submitAndWait();
 
+    /// Barriers since begin(), that of begin() included.
+    uint32_t barrierCount() const { return barrier_count_; }
     /// The command buffer being recorded, for the swapchain and the user interface.
     VkCommandBuffer commands() const { return commands_; }
     /// Ends recording and submits with semaphores (either may be null); wait() then waits and returns the times.
@@ -90,6 +98,7 @@ private:
     void prepare(const Kernel& kernel, const void* params, size_t param_bytes, std::initializer_list<Binding> bindings,
                  const Buffer* arguments);
     void dispatch(const Kernel& kernel, uint32_t thread_count);
+    void dispatchIndirect(const Kernel& kernel, const Buffer& size);
     bool conflicts(const Buffer& buffer, bool writes) const;
     void note(const Buffer& buffer, bool reads, bool writes);
     void barrier();
@@ -102,7 +111,8 @@ private:
     VkFence fence_ = VK_NULL_HANDLE;
     VkQueryPool queries_ = VK_NULL_HANDLE;
     PFN_vkCmdPushDescriptorSetKHR push_descriptors_ = nullptr;
-    VkDescriptorSet scene_set_ = VK_NULL_HANDLE;
+    SceneSet scene_;
+    uint32_t barrier_count_ = 0;
 
     // Since the last barrier. A kernel that meets a hazard puts one full barrier before itself and these start anew.
     std::unordered_set<VkBuffer> read_, written_;

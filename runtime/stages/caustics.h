@@ -14,7 +14,7 @@ public:
         const Buffer& radiance; // vec3[point_count], grows by the caustics
         uint32_t point_count;
         uint32_t photon_count; // k of the density estimation
-        float radius;          // metres, of the density estimation at most
+        float radius;          // of the density estimation at most: of the distance from the viewer
     };
     void record(Recorder& rec, const PhotonTreeStage::Output& map, const Input& in) const;
 

@@ -1,17 +1,15 @@
 #include "runtime/stages/cut.h"
 
 CutStage::CutStage(const Device& device, const SceneGpu& scene, uint32_t max_photons)
-    : summarise_(device.kernel("cut/summarise", climbConstants(device))), level_mean_(device.kernel("cut/level_mean")),
-      threshold_kernel_(device.kernel("cut/threshold")), coarse_(device.kernel("cut/coarse", climbConstants(device))),
+    : summarise_(device.kernel("cut/summarise", {climbConstant(device)})),
+      coarse_(device.kernel("cut/coarse", scene.constants(), {climbConstant(device)})),
       select_(device.kernel("cut/select")), refine_(device.kernel("cut/refine")),
-      collect_(device.kernel("cut/collect")), reorder_(device.kernel("cut/reorder")),
+      reorder_(device.kernel("cut/reorder")),
       finest_(device.kernel("cut/finest")), probe_(device.kernel("cut/probe")),
-      cover_(device.kernel("cut/cover", scene.constants())), represent_(device.kernel("cut/represent")),
+      cover_(device.kernel("cut/cover", scene.constants())), represent_(device.kernel("cut/represent", scene.constants())),
       compaction_(device, "cut.compaction", 2 * max_photons),
       tree_(device, "cut.tree", max_photons), sums_(device.array<gpu::PhotonSums>("cut.sums", max_photons)),
       arrivals_(device.array<uint32_t>("cut.arrivals", max_photons)),
-      partials_(device.array<gpu::PartialMean>("cut.partials", gpu::kPartialMeans)),
-      threshold_(device.array<gpu::CutThreshold>("cut.threshold", 1)),
       id_count_(device.array<gpu::QueueSize>("cut.id_count", 1)),
       divided_(device.array<uint32_t>("cut.divided", max_photons)),
       work_(device.array<uint32_t>("cut.work", max_photons)),
@@ -23,6 +21,7 @@ CutStage::CutStage(const Device& device, const SceneGpu& scene, uint32_t max_pho
       size_(device.array<gpu::QueueSize>("cut.size", 1)), ids_(device.array<uint32_t>("cut.ids", max_photons)),
       spheres_(device.array<gpu::vec4>("cut.spheres", max_photons)),
       nodes_(device.texelArray<gpu::CutNode>("cut.nodes", max_photons)),
+      unsorted_directions_(device.array<uint32_t>("cut.unsorted_directions", max_photons)),
       directions_(device.array<uint32_t>("cut.directions", max_photons)),
       probes_(device, "cut.probes", gpu::kCutProbeCapacity),
       hits_(device.texelArray<gpu::Hit>("cut.hits", gpu::kCutProbeCapacity))
@@ -42,9 +41,9 @@ CutStage::Output CutStage::record(Recorder& rec, const RayStage& rays, const Pho
                           .radius = in.radius,
                           .spread = gpu::kCutSpread * in.shrink,
                           .fewest = in.fewest,
-                          .most_nodes = gpu::kCutProbeCapacity / std::max(in.probes, 1u)};
+                          .most_nodes = gpu::kCutProbeCapacity / std::max(in.probes + in.rim_probes, 1u)};
     rec.clear(arrivals_);
-    rec.runIndirect(summarise_, map.size, 0, NoParams{},
+    rec.runIndirect(summarise_, map.size, NoParams{},
                     {{"Size", map.size},
                      {"TreeNodes", tree_nodes},
                      {"Photons", map.photons},
@@ -52,32 +51,26 @@ CutStage::Output CutStage::record(Recorder& rec, const RayStage& rays, const Pho
                      {"NodeParents", node_parents},
                      {"Sums", sums_},
                      {"Arrivals", arrivals_}});
-    rec.run(level_mean_, gpu::kPartialMeans * gpu::kPartialGroupSize, NoParams{},
-            {{"Size", map.size},
-             {"TreeNodes", tree_nodes},
-             {"NodeParents", node_parents},
-             {"Sums", sums_},
-             {"Partials", partials_}});
-    rec.run(threshold_kernel_, 1, NoParams{},
-            {{"Size", map.size}, {"Partials", partials_}, {"Threshold", threshold_}, {"Ids", id_count_}});
     rec.clear(arrivals_);
     rec.clear(divided_);
-    rec.runIndirect(coarse_, map.size, 0, params,
+    rec.clear(id_count_); // a tree without photons starts no thread
+    rec.runIndirect(coarse_, map.size, params,
                     {{"Size", map.size},
                      {"TreeNodes", tree_nodes},
+                     {"Photons", map.photons},
                      {"LeafParents", leaf_parents},
                      {"NodeParents", node_parents},
                      {"Sums", sums_},
-                     {"Threshold", threshold_},
                      {"Divided", divided_},
-                     {"Arrivals", arrivals_}});
+                     {"Arrivals", arrivals_},
+                     {"Ids", id_count_}});
 
     const Buffer* work = &work_;
     const Buffer* work_size = &work_size_;
     const Buffer* next = &next_work_;
     const Buffer* next_size = &next_work_size_;
     rec.clear(*work_size);
-    rec.runIndirect(select_, id_count_, 0, NoParams{},
+    rec.runIndirect(select_, id_count_, NoParams{},
                     {{"Size", map.size},
                      {"Ids", id_count_},
                      {"LeafParents", leaf_parents},
@@ -88,7 +81,7 @@ CutStage::Output CutStage::record(Recorder& rec, const RayStage& rays, const Pho
     rays.close(rec, *work_size);
     rec.clear(members_);
     if (in.mode == CutMode::kLeaves)
-        rec.runIndirect(finest_, *work_size, 0, params,
+        rec.runIndirect(finest_, *work_size, params,
                         {{"Size", map.size},
                          {"TreeNodes", tree_nodes},
                          {"Photons", map.photons},
@@ -103,10 +96,12 @@ CutStage::Output CutStage::record(Recorder& rec, const RayStage& rays, const Pho
     {
         params.last = round == in.iterations;
         rec.clear(*next_size);
-        rec.runIndirect(refine_, *work_size, 0, params,
+        rec.runIndirect(refine_, *work_size, params,
                         {{"Size", map.size},
                          {"TreeNodes", tree_nodes},
                          {"Photons", map.photons},
+                         {"LeafParents", leaf_parents},
+                         {"NodeParents", node_parents},
                          {"Sums", sums_},
                          {"WorkSize", *work_size},
                          {"Work", *work},
@@ -119,32 +114,41 @@ CutStage::Output CutStage::record(Recorder& rec, const RayStage& rays, const Pho
         std::swap(work_size, next_size);
     }
     compaction_.record(rec, members_, ids_, size_, id_count_);
-    rec.runIndirect(collect_, size_, 0, NoParams{},
-                    {{"Size", size_}, {"Ids", ids_}, {"Finals", finals_}, {"Spheres", spheres_}});
-    tree_.record(rec, spheres_, size_);
-    rec.runIndirect(reorder_, size_, 0, NoParams{},
-                    {{"Size", size_}, {"Ids", ids_}, {"Order", tree_.order()}, {"Finals", finals_}, {"Nodes", nodes_}});
-    rec.runIndirect(represent_, size_, 0, gpu::RepresentParams{.seed = in.seed},
+    const bool is_probed = in.probes > 0 && in.mode != CutMode::kNearest;
+    rec.runIndirect(represent_, size_, gpu::RepresentParams{.seed = in.seed, .is_probed = is_probed},
                     {{"CutSize", size_},
                      {"Ids", ids_},
-                     {"Order", tree_.order()},
                      {"Size", map.size},
                      {"TreeNodes", tree_nodes},
                      {"Photons", map.photons},
                      {"Sums", sums_},
-                     {"Directions", directions_}});
-    if (in.probes > 0 && in.mode != CutMode::kNearest)
+                     {"Finals", finals_},
+                     {"Spheres", spheres_},
+                     {"Directions", unsorted_directions_}});
+    tree_.record(rec, spheres_, size_);
+    rec.runIndirect(reorder_, size_, NoParams{},
+                    {{"Size", size_},
+                     {"Ids", ids_},
+                     {"Order", tree_.order()},
+                     {"Finals", finals_},
+                     {"Directions", unsorted_directions_},
+                     {"Nodes", nodes_},
+                     {"NodeDirections", directions_}});
+    if (is_probed)
         recordProbes(rec, rays, in);
     return output();
 }
 
 void CutStage::recordProbes(Recorder& rec, const RayStage& rays, const Input& in) const
 {
-    const gpu::ProbeParams params{.ray_count = in.probes, .seed = in.seed};
+    const gpu::ProbeParams params{.ray_count = in.probes, .rim_count = in.rim_probes, .seed = in.seed};
     rays.reset(rec, probes_.size); // an empty cut starts no thread that would say so
-    rec.runIndirect(probe_, size_, 0, params,
-                    {{"Size", size_}, {"Nodes", nodes_}, {"Queue", probes_.size}, {"Rays", probes_.rays}});
+    rec.runIndirect(probe_, size_, params,
+                    {{"Size", size_},
+                     {"Nodes", nodes_},
+                     {"Queue", probes_.size},
+                     {"Rays", probes_.rays}});
     rays.closest(rec, probes_, hits_, in.seed);
-    rec.runIndirect(cover_, size_, 0, params,
+    rec.runIndirect(cover_, size_, params,
                     {{"Size", size_}, {"Rays", probes_.rays}, {"Hits", hits_}, {"Nodes", nodes_}});
 }

@@ -23,10 +23,11 @@ public:
         uint32_t iterations;   // of refinement
         float difference;      // Delta_E, relative
         uint32_t photon_count; // k of density estimation
-        float radius;          // metres, of density estimation at most
+        float radius;          // of density estimation at most: of the distance from the viewer
         float shrink;    // of the nodes' supports, <= 1: in a standing picture they may be as noisy as they are sharp
         uint32_t fewest = gpu::kCutFewest; // photons of a node that is not divided further: less where supports have shrunk
         uint32_t probes; // rays that a node feels for its surface with; 0: it is taken for a plane
+        uint32_t rim_probes = 0; // rays besides that say where a lookup need not ask what is seen: they pay where lookups are many
         uint32_t seed;
         bool operator==(const Input&) const = default; // equal input over one map gives one cut
     };
@@ -38,19 +39,21 @@ public:
         const Tree& tree;    // over their supports
     };
     Output record(Recorder& rec, const RayStage& rays, const PhotonTreeStage::Output& map, const Input& in) const;
+    /// Nodes of the last record()'s cut; waits for the device.
+    uint32_t nodeCount(const Device& device) const { return device.download<gpu::QueueSize>(size_, 1)[0].count; }
     /// What the last record() left.
     Output output() const { return {.size = size_, .nodes = nodes_, .directions = directions_, .tree = tree_}; }
 
 private:
     void recordProbes(Recorder& rec, const RayStage& rays, const Input& in) const;
 
-    Kernel summarise_, level_mean_, threshold_kernel_, coarse_, select_, refine_, collect_, reorder_, finest_, probe_,
+    Kernel summarise_, coarse_, select_, refine_, reorder_, finest_, probe_,
         cover_, represent_;
     Compaction compaction_;
     Tree tree_;
-    Buffer sums_, arrivals_, partials_, threshold_, id_count_, divided_, work_, next_work_, work_size_, next_work_size_,
+    Buffer sums_, arrivals_, id_count_, divided_, work_, next_work_, work_size_, next_work_size_,
         members_, finals_;
-    Buffer size_, ids_, spheres_, nodes_, directions_;
+    Buffer size_, ids_, spheres_, nodes_, unsorted_directions_, directions_;
     RayQueue probes_;
     Buffer hits_;
 };

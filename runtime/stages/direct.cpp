@@ -65,7 +65,7 @@ void DirectStage::recordSample(Recorder& rec, const RayStage& rays, const Input&
         return;
     rays.close(rec, emitter_queue_.size);
     rays.closest(rec, emitter_queue_, hits_, emitted.seed);
-    rec.runIndirect(emitted_, emitter_queue_.size, 0, emitted,
+    rec.runIndirect(emitted_, emitter_queue_.size, emitted,
                     {{"EmitterQueue", emitter_queue_.size},
                      {"Rays", emitter_queue_.rays},
                      {"Hits", hits_},

@@ -56,7 +56,7 @@ void GatherStage::record(Recorder& rec, const RayStage& rays, const SamplesStage
     if (!in.by_direction)
         return;
     rec.copy(harmonics_, old_harmonics_, harmonics_.size());
-    rec.runIndirect(carry_, samples.kept, 0, NoParams{},
+    rec.runIndirect(carry_, samples.kept, NoParams{},
                     {{"KeptSize", samples.kept},
                      {"Kept", samples.kept_from},
                      {"OldHarmonics", old_harmonics_},
@@ -119,7 +119,7 @@ void GatherStage::follow(Recorder& rec, const RayStage& rays, const PhotonTreeSt
         {
             const auto scope = rec.scope("gather.link"); // the lookups: what the cut is there for
             if (CutMode(params.mode) == CutMode::kKnn)
-                rec.runIndirect(link_knn_, queue->size, 0, params,
+                rec.runIndirect(link_knn_, queue->size, params,
                                 {{"Queue", queue->size},
                                  {"Rays", queue->rays},
                                  {"Hits", hits_},
@@ -131,7 +131,7 @@ void GatherStage::follow(Recorder& rec, const RayStage& rays, const PhotonTreeSt
                                  {"TreeNodes", map.tree.nodes()},
                                  {"Photons", map.photons}});
             else
-                rec.runIndirect(link_, queue->size, 0, params,
+                rec.runIndirect(link_, queue->size, params,
                                 {{"Queue", queue->size},
                                  {"Rays", queue->rays},
                                  {"Hits", hits_},

@@ -20,7 +20,7 @@ public:
         uint32_t ray_count;      // of a sample, <= max_rays_per_sample
         uint32_t specular_depth; // most delta events of a ray
         uint32_t photon_count;   // k, in CutMode::kKnn
-        float radius;            // metres: of density estimation, and how far a cut node may be
+        float radius;            // of density estimation at most, in CutMode::kKnn: of the distance from the viewer
         uint32_t seed;
         bool by_direction = false; // whether harmonics() is wanted; only in scenes with rough reflection
     };

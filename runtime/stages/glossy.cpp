@@ -39,7 +39,7 @@ void GlossyStage::record(Recorder& rec, const RayStage& rays, const CutStage::Ou
     {
         rays.closest(rec, *queue, hits_, traceSeed(in.seed, in.first_sample, ~params.depth));
         rays.reset(rec, next->size);
-        rec.runIndirect(link_, queue->size, 0, params,
+        rec.runIndirect(link_, queue->size, params,
                         {{"Queue", queue->size},
                          {"Rays", queue->rays},
                          {"Hits", hits_},

@@ -5,13 +5,13 @@
 
 namespace
 {
-constexpr uint32_t kManyLights = 16; // from here on some of them may be out of sight
+constexpr uint32_t kManyLights = 4; // from here on some of them may be out of sight; a lamp of two triangles is two
 
 /// Fixed-point digits of the scores: as many as a cell that all photons leave by cannot overflow.
-float scoreScale(uint32_t path_count, uint32_t bounce_limit)
+float scoreScale(uint32_t photon_count)
 {
-    constexpr double kMostWeight = 1.0 / double(gpu::kGuideUnguided), kMostScale = 16;
-    const double most = double(path_count) * bounce_limit * gpu::kGuideMostWanted * kMostWeight;
+    constexpr double kMostWeight = gpu::kGuideGroups / double(gpu::kGuideUnguided), kMostScale = 16;
+    const double most = double(photon_count) * gpu::kGuideMostWanted * kMostWeight;
     const double scale = std::min(kMostScale, 4294967295.0 / most);
     return float(scale >= 1 ? std::floor(scale) : scale);
 }
@@ -40,6 +40,9 @@ GuidedLights groupsOf(std::span<const LightShare> lights)
         result.other_lights.push_back(float(others));
     }
     result.groups.shares[gpu::kGuideBeams] = float(others);
+    const auto groups = std::ranges::count_if(result.groups.shares, [](float share) { return share > 0; });
+    for (uint32_t g = 0; g < gpu::kGuideGroups; ++g)
+        result.groups.unlearned[g] = result.groups.shares[g] > 0 ? 1.0f / float(groups) : 0;
     if (result.other_lights.empty())
         result.other_lights.push_back(0);
     return result;
@@ -93,18 +96,18 @@ void GuideStage::mark(Recorder& rec, const RayQueue& queue, uint32_t max_rays, c
             {{"Queue", queue.size}, {"Rays", queue.rays}, {"Hits", hits}, {"Wanted", wanted_}});
 }
 
-void GuideStage::learn(Recorder& rec, const Buffer& photons, const Buffer& flags, uint32_t path_count,
-                       uint32_t bounce_limit)
+void GuideStage::learn(Recorder& rec, const StoredPhotons& map)
 {
     has_learned_ = true;
-    rec.run(score_, path_count,
-            gpu::ScoreParams{
-                .path_count = path_count, .bounce_limit = bounce_limit, .scale = scoreScale(path_count, bounce_limit)},
+    rec.run(score_, map.path_count, gpu::ScoreParams{.scale = scoreScale(map.capacity)},
             {{"Groups", groups_},
              {"Distribution", distribution_},
              {"Cells", cells_},
-             {"Photons", photons},
-             {"Flags", flags},
+             {"Photons", map.photons},
+             {"Slots", map.slots},
+             {"Offsets", map.offsets},
+             {"Counts", map.counts},
+             {"Store", map.store},
              {"Wanted", wanted_},
              {"Scores", scores_}});
     rec.run(learn_, gpu::kGuideLearnSize, NoParams{},

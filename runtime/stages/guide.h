@@ -3,6 +3,7 @@
 // change of its probability, so that the map stays unbiased whatever was learned.
 #pragma once
 #include "runtime/stages/rays.h"
+#include "runtime/stages/stored_photons.h"
 #include "shaders/guide/guide.h"
 
 class GuideStage
@@ -29,8 +30,8 @@ public:
     /// @param hits gpu::Hit[queue capacity]
     /// @param more whether it is wanted, too, where the rays of the last mark() ended
     void mark(Recorder& rec, const RayQueue& queue, uint32_t max_rays, const Buffer& hits, bool more = false);
-    /// Learns from the photons of the last emit(). @param photons, flags as PhotonStage gives them
-    void learn(Recorder& rec, const Buffer& photons, const Buffer& flags, uint32_t path_count, uint32_t bounce_limit);
+    /// Learns from the photons of the last emit().
+    void learn(Recorder& rec, const StoredPhotons& map);
 
 private:
     bool has_learned_ = false;

@@ -8,7 +8,7 @@ constexpr uint32_t kCpuRun = 4;
 
 InterpolateStage::InterpolateStage(const Device& device, uint32_t max_samples)
     : reorder_(device.kernel("interpolate/reorder")), run_(device.isCpu() ? kCpuRun : 1),
-      apply_(device.kernel("interpolate/apply", std::span(&run_, 1))), tree_(device, "interpolate.tree", max_samples),
+      apply_(device.kernel("interpolate/apply", {{"kRun", run_}})), tree_(device, "interpolate.tree", max_samples),
       sorted_(device.texelArray<gpu::SampleTexels>("interpolate.sorted", max_samples)),
       statistics_(device.array<gpu::InterpolateStatistics>("interpolate.statistics", 1))
 {
@@ -18,7 +18,7 @@ InterpolateStage::Sorted InterpolateStage::sort(Recorder& rec, const SamplesStag
 {
     tree_.record(rec, samples.spheres, samples.size);
     rec.runIndirect(
-        reorder_, samples.size, 0, NoParams{},
+        reorder_, samples.size, NoParams{},
         {{"Size", samples.size}, {"Order", tree_.order()}, {"Samples", samples.samples}, {"Sorted", sorted_}});
     return {.size = samples.size, .tree = tree_, .samples = sorted_};
 }
@@ -27,7 +27,7 @@ void InterpolateStage::record(Recorder& rec, const Sorted& sorted, const Input& 
 {
     rec.clear(statistics_);
     const gpu::InterpolateParams params{
-        .point_count = in.point_count, .width = in.width, .alpha = in.alpha, .radius = in.radius, .white = in.white};
+        .point_count = in.point_count, .width = in.width, .alpha = in.alpha, .white = in.white};
     rec.run(apply_, (in.point_count + run_ - 1) / run_, params,
             {{"Size", sorted.size},
              {"TreeNodes", sorted.tree.nodes()},

@@ -14,8 +14,7 @@ public:
         const Buffer& radiance;       // vec3[point_count], grows by the indirect diffuse light
         uint32_t point_count;
         uint32_t width; // of the picture, pixels
-        float alpha;  // of Eq. 2, per metre, where no sample is accepted
-        float radius; // metres: how far a sample may be there
+        float alpha; // of Eq. 2, per view distance, where no sample is accepted
         bool white = false; // as if every surface reflected all of it and nothing else had been: a debug view
     };
     struct Sorted // samples as pixels look them up

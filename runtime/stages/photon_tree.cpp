@@ -1,24 +1,30 @@
 #include "runtime/stages/photon_tree.h"
 
-PhotonTreeStage::PhotonTreeStage(const Device& device, std::string_view name, uint32_t max_slots)
-    : collect_(device.kernel("photons/collect")), reorder_(device.kernel("photons/reorder")),
-      compaction_(device, fmt::format("{}.compaction", name), max_slots), tree_(device, fmt::format("{}.tree", name), max_slots),
-      slot_count_(device.array<gpu::QueueSize>(fmt::format("{}.slot_count", name), 1)),
+PhotonTreeStage::PhotonTreeStage(const Device& device, std::string_view name, uint32_t max_photons)
+    : keys_(device.kernel("photons/keys")), reorder_(device.kernel("photons/reorder")),
+      tree_(device, fmt::format("{}.tree", name), max_photons),
       size_(device.array<gpu::QueueSize>(fmt::format("{}.size", name), 1)),
-      slots_(device.array<uint32_t>(fmt::format("{}.slots", name), max_slots)),
-      spheres_(device.array<gpu::vec4>(fmt::format("{}.spheres", name), max_slots)),
-      sorted_(device.texelArray<gpu::Photon>(fmt::format("{}.sorted", name), max_slots))
+      spheres_(device.array<gpu::vec4>(fmt::format("{}.spheres", name), max_photons)),
+      sorted_(device.texelArray<gpu::Photon>(fmt::format("{}.sorted", name), max_photons))
 {
 }
 
-PhotonTreeStage::Output PhotonTreeStage::record(Recorder& rec, const RayStage& rays, const PhotonStage::Output& in) const
+PhotonTreeStage::Output PhotonTreeStage::record(Recorder& rec, const PhotonStage::Output& in) const
 {
-    rays.resize(rec, slot_count_, in.slot_count);
-    compaction_.record(rec, in.flags, slots_, size_, slot_count_);
-    rec.runIndirect(collect_, size_, 0, NoParams{},
-                    {{"Size", size_}, {"Slots", slots_}, {"Photons", in.photons}, {"Spheres", spheres_}});
-    tree_.record(rec, spheres_, size_);
-    rec.runIndirect(reorder_, size_, 0, NoParams{},
-                    {{"Size", size_}, {"Slots", slots_}, {"Order", tree_.order()}, {"Photons", in.photons}, {"Sorted", sorted_}});
+    rec.copy(in.size, size_, sizeof(gpu::QueueSize));
+    rec.runIndirect(keys_, size_, NoParams{},
+                    {{"Size", size_},
+                     {"Slots", in.slots},
+                     {"Photons", in.photons},
+                     {"Spheres", spheres_},
+                     {"Keys", tree_.keys()},
+                     {"Order", tree_.order()}});
+    tree_.recordKeyed(rec, spheres_, size_, 32);
+    rec.runIndirect(reorder_, size_, NoParams{},
+                    {{"Size", size_},
+                     {"Slots", in.slots},
+                     {"Order", tree_.order()},
+                     {"Photons", in.photons},
+                     {"Sorted", sorted_}});
     return output();
 }

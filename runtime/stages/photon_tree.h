@@ -6,8 +6,8 @@
 class PhotonTreeStage
 {
 public:
-    /// @param max_slots of the photon stage it is built from
-    PhotonTreeStage(const Device& device, std::string_view name, uint32_t max_slots);
+    /// @param max_photons capacity of the photon stage it is built from
+    PhotonTreeStage(const Device& device, std::string_view name, uint32_t max_photons);
 
     struct Output
     {
@@ -15,13 +15,12 @@ public:
         const Buffer& photons; // gpu::Photon[size.count], sorted as the tree
         const Tree& tree;
     };
-    Output record(Recorder& rec, const RayStage& rays, const PhotonStage::Output& in) const;
+    Output record(Recorder& rec, const PhotonStage::Output& in) const;
     /// What the last record() left.
     Output output() const { return {.size = size_, .photons = sorted_, .tree = tree_}; }
 
 private:
-    Kernel collect_, reorder_;
-    Compaction compaction_;
+    Kernel keys_, reorder_;
     Tree tree_;
-    Buffer slot_count_, size_, slots_, spheres_, sorted_;
+    Buffer size_, spheres_, sorted_;
 };

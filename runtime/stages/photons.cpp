@@ -7,13 +7,22 @@ constexpr float kAimedFraction = 0.9f;
 } // namespace
 
 PhotonStage::PhotonStage(const Device& device, const SceneGpu& scene, PhotonKind kind, uint32_t max_paths,
-                         uint32_t max_bounces)
-    : kind_(kind), has_specular_(scene.hasFeature(gpu::kFeatureSpecular)),
-      has_targets_(scene.info().caustic_target_count > 0), emit_(device.kernel("photons/emit", scene.constants())),
-      trace_(device.kernel("photons/trace", scene.constants())),
-      starts_(device.array<gpu::PhotonStart>("photons.starts", max_paths)),
-      photons_(device.array<gpu::Photon>("photons.photons", uint64_t(max_paths) * max_bounces)),
-      flags_(device.array<uint32_t>("photons.flags", uint64_t(max_paths) * max_bounces)),
+                         uint32_t capacity)
+    : kind_(kind), has_targets_(scene.info().caustic_target_count > 0), capacity_(capacity),
+      emit_(device.kernel("photons/emit", scene.constants())), trace_(device.kernel("photons/trace", scene.constants())),
+      close_(device.kernel("photons/close")), place_(device.kernel("photons/place")),
+      scan_(device, "photons.scan", max_paths), starts_(device.array<gpu::PhotonStart>("photons.starts", max_paths)),
+      photons_(device.array<gpu::Photon>("photons.photons", capacity)),
+      tags_(device.array<gpu::PhotonTag>("photons.tags", capacity)),
+      appended_(device.array<uint32_t>("photons.appended", 1)),
+      counts_(device.array<uint32_t>("photons.counts", max_paths)),
+      offsets_(device.array<uint32_t>("photons.offsets", max_paths)),
+      total_(device.array<uint32_t>("photons.total", 1)), store_(device.array<gpu::PhotonStore>("photons.store", 1)),
+      slots_(device.array<uint32_t>("photons.slots", capacity)),
+      size_(device.array<gpu::QueueSize>("photons.size", 1)),
+      path_size_(device.array<gpu::QueueSize>("photons.path_size", 1)),
+      in_order_(device.array<gpu::QueueSize>("photons.in_order", 1)),
+      again_(device.array<gpu::QueueSize>("photons.again", 1)),
       traced_(device.array<gpu::QueueSize>("photons.traced", 1))
 {
 }
@@ -30,16 +39,39 @@ PhotonStage::Output PhotonStage::record(Recorder& rec, const RayStage& rays, con
     else
         rec.run(emit_, in.path_count, emission, {{"Starts", starts_}});
 
-    rec.clear(flags_);
+    gpu::TraceParams params{.path_count = in.path_count,
+                            .first_path = in.first_path,
+                            .seed = in.seed,
+                            .capacity = capacity_,
+                            .bounce_limit = in.bounce_limit,
+                            .caustic = caustic,
+                            .again = 0};
+    const std::initializer_list<Binding> bindings{{"Starts", starts_},   {"Photons", photons_}, {"Tags", tags_},
+                                                  {"Appended", appended_}, {"Counts", counts_}, {"Offsets", offsets_},
+                                                  {"Store", store_},     {"Slots", slots_},     {"Traced", traced_}};
+    rec.clear(appended_);
     rec.clear(traced_);
-    const gpu::TraceParams params{.path_count = in.path_count,
-                                  .first_path = in.first_path,
-                                  .seed = in.seed,
-                                  .event_limit = in.bounce_limit + (has_specular_ ? in.specular_depth : 0),
-                                  .bounce_limit = in.bounce_limit,
-                                  .caustic = caustic};
-    rec.run(trace_, in.path_count, params,
-            {{"Starts", starts_}, {"Photons", photons_}, {"Flags", flags_}, {"Traced", traced_}});
+    rec.run(trace_, in.path_count, params, bindings);
+    rays.resize(rec, path_size_, in.path_count);
+    scan_.record(rec, counts_, offsets_, total_, path_size_);
+    rec.run(close_, 1, gpu::StoreParams{.path_count = in.path_count, .capacity = capacity_},
+            {{"Offsets", offsets_},
+             {"Total", total_},
+             {"Store", store_},
+             {"Size", size_},
+             {"InOrder", in_order_},
+             {"Again", again_}});
+    rec.runIndirect(place_, in_order_, NoParams{},
+                    {{"InOrder", in_order_}, {"Tags", tags_}, {"Offsets", offsets_}, {"Slots", slots_}});
+    params.again = 1;
+    rec.runIndirect(trace_, again_, params, bindings);
     rays.count(rec, traced_);
-    return {.photons = photons_, .flags = flags_, .slot_count = in.path_count * in.bounce_limit};
+    return {.photons = photons_,
+            .slots = slots_,
+            .size = size_,
+            .offsets = offsets_,
+            .counts = counts_,
+            .store = store_,
+            .path_count = in.path_count,
+            .capacity = capacity_};
 }

@@ -1,6 +1,7 @@
 // Photons: emission from every light and their paths through the scene.
 #pragma once
 #include "runtime/stages/guide.h"
+#include "runtime/stages/primitives.h"
 #include "shaders/photons/photons.h"
 
 /// Which photons a map holds (path ownership: each light path is in one of them where it is read).
@@ -13,30 +14,31 @@ enum class PhotonKind
 class PhotonStage
 {
 public:
-    /// @param max_paths photons emitted a frame at most, @param max_bounces photons one path may store at most
-    PhotonStage(const Device& device, const SceneGpu& scene, PhotonKind kind, uint32_t max_paths, uint32_t max_bounces);
+    /// @param max_paths photons emitted a frame at most
+    /// @param capacity photons that a map holds at most: where paths store more, the last paths are left out and the others
+    ///        carry their light
+    PhotonStage(const Device& device, const SceneGpu& scene, PhotonKind kind, uint32_t max_paths, uint32_t capacity);
 
     struct Input
     {
-        uint32_t path_count;     // photons to emit, <= max_paths
-        uint32_t bounce_limit;   // photons a path may store, <= max_bounces
-        uint32_t specular_depth; // delta events a path may have besides
-        uint32_t first_path;     // index of path 0 in the sequence of all frames
+        uint32_t path_count; // photons to emit, <= max_paths
+        uint32_t first_path; // index of path 0 in the sequence of all frames
         uint32_t seed;
-        const GuideStage* guide = nullptr; // says how photons leave; of Kind::kGlobal only
+        const GuideStage* guide = nullptr;    // says how photons leave; of Kind::kGlobal only
+        uint32_t bounce_limit = gpu::kNone;   // photons that a path may store; a limit takes light away: for looking at the first
         bool operator==(const Input&) const = default; // equal input under equal lights gives equal photons
     };
-    struct Output
-    {
-        const Buffer& photons; // gpu::Photon[slot_count], only where flags says so
-        const Buffer& flags;   // uint[slot_count]: 1 where a photon is stored
-        uint32_t slot_count;   // path_count x bounce_limit
-    };
+    using Output = StoredPhotons;
     Output record(Recorder& rec, const RayStage& rays, const Input& in) const;
+    /// gpu::PhotonStore of the last record().
+    const Buffer& store() const { return store_; }
 
 private:
     PhotonKind kind_;
-    bool has_specular_, has_targets_;
-    Kernel emit_, trace_;
-    Buffer starts_, photons_, flags_, traced_;
+    bool has_targets_;
+    uint32_t capacity_;
+    Kernel emit_, trace_, close_, place_;
+    Scan scan_;
+    Buffer starts_, photons_, tags_, appended_, counts_, offsets_, total_, store_, slots_, size_, path_size_, in_order_, again_,
+        traced_;
 };

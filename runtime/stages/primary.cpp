@@ -38,7 +38,7 @@ PrimaryStage::Output PrimaryStage::record(Recorder& rec, const RayStage& rays, c
                                       .spread = in.camera.orthographic ? 0 : width};
         rays.closest(rec, *queue, hits_, traceSeed(in.camera.seed, in.camera.first_sample, depth));
         rays.reset(rec, next->size);
-        rec.runIndirect(chain_, queue->size, 0, params,
+        rec.runIndirect(chain_, queue->size, params,
                         {{"Queue", queue->size}, {"Rays", queue->rays}, {"Hits", hits_}, {"Points", points_}, {"Radiance", radiance_},
                          {"NextQueue", next->size}, {"NextRays", next->rays}, {"DiffusePoints", diffuse_points_}});
         rays.close(rec, next->size);

@@ -5,8 +5,6 @@
 
 namespace
 {
-constexpr std::array kFlags{1u}; // of primitives/sum
-
 uint32_t dividedUp(uint32_t count, uint32_t by)
 {
     return count / by + (count % by > 0);
@@ -21,9 +19,9 @@ gpu::ScanParams scanParams(uint32_t max_count, Workers workers)
 }
 
 /// Threads that take shares of their own need not meet more than once.
-std::array<uint32_t, 1> scanConstants(Workers workers)
+Constant scanConstant(Workers workers)
 {
-    return {workers == Workers::kThreads ? 0 : gpu::kScanItems};
+    return {"kItems", workers == Workers::kThreads ? 0 : gpu::kScanItems};
 }
 
 uint32_t sortWorkerCount(uint32_t max_count, Workers workers)
@@ -75,16 +73,16 @@ RadixSort::RadixSort(const Device& device, std::string_view name, uint32_t max_c
       in_one_group_(workers_ == Workers::kGroups && max_count <= gpu::kSmallSort)
 {
     check(key_words == 1 || key_words == 2, "{}: keys of {} words", name, key_words);
-    const std::array constants{key_words};
+    const Constant words{"kKeyWords", key_words};
     if (in_one_group_)
     {
-        small_ = device.kernel("primitives/sort_small", constants);
+        small_ = device.kernel("primitives/sort_small", {words});
         return;
     }
     const std::string kind = workers_ == Workers::kGroups ? "primitives/sort_" : "primitives/lane_";
-    count_ = device.kernel(kind + "count", constants);
+    count_ = device.kernel(kind + "count", {words});
     offsets_ = device.kernel(kind + "offsets");
-    move_ = device.kernel(kind + "move", constants);
+    move_ = device.kernel(kind + "move", {words});
     keys_ = device.array<uint32_t>(fmt::format("{}.keys", name), uint64_t(max_count) * key_words);
     values_ = device.array<uint32_t>(fmt::format("{}.values", name), max_count);
     counts_ = device.array<uint32_t>(fmt::format("{}.counts", name), uint64_t(worker_count_) * gpu::kMaxDigits);
@@ -149,7 +147,7 @@ void RadixSort::recordPass(Recorder& rec, const Pairs& from, const Pairs& to, co
 
 Scan::Scan(const Device& device, std::string_view name, uint32_t max_count, std::optional<Workers> workers)
     : params_(scanParams(max_count, workers.value_or(fastestWorkers(device)))), sum_(device.kernel("primitives/sum")),
-      scan_(device.kernel("primitives/scan", scanConstants(workers.value_or(fastestWorkers(device))))),
+      scan_(device.kernel("primitives/scan", {scanConstant(workers.value_or(fastestWorkers(device)))})),
       group_sums_(device.array<uint32_t>(fmt::format("{}.group_sums", name), params_.group_count))
 {
 }
@@ -164,8 +162,8 @@ void Scan::record(Recorder& rec, const Buffer& values, const Buffer& sums, const
 
 Compaction::Compaction(const Device& device, std::string_view name, uint32_t max_count, std::optional<Workers> workers)
     : params_(scanParams(max_count, workers.value_or(fastestWorkers(device)))),
-      sum_(device.kernel("primitives/sum", kFlags)),
-      compact_(device.kernel("primitives/compact", scanConstants(workers.value_or(fastestWorkers(device))))),
+      sum_(device.kernel("primitives/sum", {{"kFlags", 1}})),
+      compact_(device.kernel("primitives/compact", {scanConstant(workers.value_or(fastestWorkers(device)))})),
       group_sums_(device.array<uint32_t>(fmt::format("{}.group_sums", name), params_.group_count))
 {
 }

@@ -78,8 +78,7 @@ public:
 
     /// indices[0, n) become the i < count with flags[i] != 0, ascending.
     /// @param flags uint[max_count], @param indices uint[max_count]; not the same buffer
-    /// @param selected gpu::QueueSize that becomes n, ready for indirect dispatch in groups of kRaysGroupSize threads;
-    ///        not `size` itself
+    /// @param selected gpu::QueueSize that becomes n, ready for indirect dispatch; not `size` itself
     void record(Recorder& rec, const Buffer& flags, const Buffer& indices, const Buffer& selected,
                 const Buffer& size) const;
 

@@ -67,7 +67,7 @@ void RayStage::closest(Recorder& rec, const RayQueue& queue, const Buffer& hits,
 {
     if (tally_)
         tally_->note(rec, queue.size, false);
-    rec.runIndirect(closest_, queue.size, 0, gpu::RaysParams{.seed = seed},
+    rec.runIndirect(closest_, queue.size, gpu::RaysParams{.seed = seed},
                     {{"Queue", queue.size}, {"Rays", queue.rays}, {"Hits", hits}});
 }
 
@@ -81,5 +81,5 @@ void RayStage::visible(Recorder& rec, const Buffer& size, const Buffer& shadow_r
 {
     if (tally_)
         tally_->note(rec, size, true);
-    rec.runIndirect(visible_, size, 0, NoParams{}, {{"Queue", size}, {"ShadowRays", shadow_rays}, {"Radiance", radiance}});
+    rec.runIndirect(visible_, size, NoParams{}, {{"Queue", size}, {"ShadowRays", shadow_rays}, {"Radiance", radiance}});
 }

@@ -49,28 +49,50 @@ const Buffer& ReferenceStage::record(Recorder& rec, const RayStage& rays, const 
     const uint32_t path_count = pixel_count * in.camera.sample_count;
     rays.resize(rec, queue_.size, path_count);
     rec.run(generate_, path_count, in.camera, {{"Rays", queue_.rays}});
-
     const Counted counted = countedFor(in.term);
-    const RayQueue* queue = &queue_;
+    follow(rec, rays, queue_,
+           {.depth = 0,
+            .depth_limit = in.depth_limit,
+            .pixel_count = pixel_count,
+            .first_sample = in.camera.first_sample,
+            .seed = in.camera.seed,
+            .stages = counted.stages,
+            .lobes = counted.lobes,
+            .first_stage = gpu::kStageEye});
+    return radiance_;
+}
+
+const Buffer& ReferenceStage::recordLeft(Recorder& rec, const RayStage& rays, const LeftInput& in) const
+{
+    const auto scope = rec.scope("reference");
+    // The lobe of x has been chosen: everything that was left through it counts.
+    follow(rec, rays, in.rays,
+           {.depth = 0,
+            .depth_limit = in.depth_limit,
+            .pixel_count = in.path_count,
+            .first_sample = 0,
+            .seed = in.seed,
+            .stages = countedFor(gpu::kTermIndirect).stages,
+            .lobes = gpu::kLobesBoth,
+            .first_stage = gpu::kStageLeft});
+    return radiance_;
+}
+
+void ReferenceStage::follow(Recorder& rec, const RayStage& rays, const RayQueue& first, gpu::ShadeParams params) const
+{
+    const RayQueue* queue = &first;
     const RayQueue* next = &next_queue_;
-    for (uint32_t depth = 0; depth < in.depth_limit; ++depth)
+    for (; params.depth < params.depth_limit; ++params.depth)
     {
-        const gpu::ShadeParams params{.depth = depth,
-                                      .depth_limit = in.depth_limit,
-                                      .pixel_count = pixel_count,
-                                      .first_sample = in.camera.first_sample,
-                                      .seed = in.camera.seed,
-                                      .stages = counted.stages,
-                                      .lobes = counted.lobes};
         {
             const auto trace = rec.scope("reference.closest");
-            rays.closest(rec, *queue, hits_, traceSeed(in.camera.seed, in.camera.first_sample, depth));
+            rays.closest(rec, *queue, hits_, traceSeed(params.seed, params.first_sample, params.depth));
         }
         rays.reset(rec, next->size);
         rays.reset(rec, shadow_size_);
         {
             const auto shade = rec.scope("reference.shade");
-            rec.runIndirect(shade_, queue->size, 0, params,
+            rec.runIndirect(shade_, queue->size, params,
                             {{"Queue", queue->size},
                              {"Rays", queue->rays},
                              {"Hits", hits_},
@@ -87,5 +109,4 @@ const Buffer& ReferenceStage::record(Recorder& rec, const RayStage& rays, const 
         rays.visible(rec, shadow_size_, shadow_rays_, radiance_);
         std::swap(queue, next);
     }
-    return radiance_;
 }

@@ -17,12 +17,6 @@ uint32_t strideFor(uint32_t pixel_count, uint32_t max_samples)
     return stride;
 }
 
-float diagonalOf(const gpu::SceneInfo& info)
-{
-    return std::hypot(info.bounds_max.x - info.bounds_min.x, info.bounds_max.y - info.bounds_min.y,
-                      info.bounds_max.z - info.bounds_min.z);
-}
-
 uint32_t levelsFor(uint32_t width, uint32_t height, uint32_t stride)
 {
     const uint32_t longest = (std::max(width, height) + stride - 1) / stride;
@@ -40,9 +34,9 @@ uint32_t pointCount(uint32_t width, uint32_t height, uint32_t stride)
 }
 } // namespace
 
-SamplesStage::SamplesStage(const Device& device, const SceneGpu& scene, uint32_t width, uint32_t height,
+SamplesStage::SamplesStage(const Device& device, uint32_t width, uint32_t height,
                            uint32_t max_samples)
-    : width_(width), height_(height), diagonal_(diagonalOf(scene.info())),
+    : width_(width), height_(height),
       stride_(strideFor(width * height, max_samples)), levels_(levelsFor(width, height, stride_)),
       grid_count_(1u << (2 * levels_)), point_count_(pointCount(width, height, stride_)),
       points_kernel_(device.kernel("samples/points")), mean_(device.kernel("samples/mean")),
@@ -90,7 +84,7 @@ SamplesStage::SamplesStage(const Device& device, const SceneGpu& scene, uint32_t
 void SamplesStage::recordKept(Recorder& rec, const gpu::ClusterParams& params) const
 {
     rec.copy(size_, old_size_, sizeof(gpu::QueueSize));
-    rec.runIndirect(recall_, old_size_, 0, NoParams{},
+    rec.runIndirect(recall_, old_size_, NoParams{},
                     {{"Size", old_size_},
                      {"Samples", samples_},
                      {"Tenures", tenures_},
@@ -119,7 +113,7 @@ void SamplesStage::recordKept(Recorder& rec, const gpu::ClusterParams& params) c
     rec.run(mask_, point_count_, params,
             {{"Points", points_}, {"Flags", occupied_flags_}, {"Claims", claims_}, {"Sums", sums_}, {"Rest", rest_}});
     sample_compaction_.record(rec, occupied_flags_, kept_, kept_size_, old_size_);
-    rec.runIndirect(keep_, kept_size_, 0, NoParams{},
+    rec.runIndirect(keep_, kept_size_, NoParams{},
                     {{"KeptSize", kept_size_},
                      {"Kept", kept_},
                      {"Sums", sums_},
@@ -135,13 +129,12 @@ void SamplesStage::recordKept(Recorder& rec, const gpu::ClusterParams& params) c
 void SamplesStage::recordSeeds(Recorder& rec, const RayStage& rays, const Input& in, const Buffer& points) const
 {
     // Fixed point that cannot overflow in any sum that is read, those of the root's children and below.
-    const float largest_eps = 2 + in.alpha * diagonal_;
     gpu::SeedParams seeding{.level = 0,
                             .levels = levels_,
                             .budget = in.budget,
                             .seed = in.frameSeed(),
                             .alpha = in.alpha,
-                            .variation_scale = 4294967040.0f / (largest_eps * float(grid_count_ / 4)),
+                            .variation_scale = 4294967040.0f / (gpu::kMostVariation * float(grid_count_ / 4)),
                             .uniform_ = in.mode == SamplesMode::kUniform};
     const auto levelThreads = [&](uint32_t level) { return 1u << (2 * (levels_ - level)); };
     for (seeding.level = 1; seeding.level <= levels_; ++seeding.level)
@@ -157,7 +150,7 @@ void SamplesStage::recordSeeds(Recorder& rec, const RayStage& rays, const Input&
                  {"KeptSize", kept_size_}});
     rays.resize(rec, point_size_, point_count_);
     seed_compaction_.record(rec, seed_flags_, seeds_, cluster_size_, point_size_);
-    rec.runIndirect(seed_, cluster_size_, 0, NoParams{},
+    rec.runIndirect(seed_, cluster_size_, NoParams{},
                     {{"Size", cluster_size_},
                      {"Seeds", seeds_},
                      {"Points", points},
@@ -188,7 +181,7 @@ void SamplesStage::recordClusters(Recorder& rec, const Input& in, const gpu::Clu
     {
         assign(rec, params, points);
         rec.runIndirect(
-            update_, cluster_size_, 0, params,
+            update_, cluster_size_, params,
             {{"Size", cluster_size_}, {"Sums", sums_}, {"Clusters", clusters_}, {"Spheres", cluster_spheres_}});
         tree_.refit(rec, cluster_spheres_, cluster_size_);
     }
@@ -227,10 +220,10 @@ SamplesStage::Output SamplesStage::record(Recorder& rec, const RayStage& rays, c
     recordClusters(rec, in, params, points);
     rec.run(snap_, point_count_, params, {{"Owners", owners_}, {"Sums", sums_}});
     rec.run(measure_, point_count_, params, {{"Owners", owners_}, {"Points", points_}, {"Sums", sums_}});
-    rec.runIndirect(occupied_kernel_, cluster_size_, 0, NoParams{},
+    rec.runIndirect(occupied_kernel_, cluster_size_, NoParams{},
                     {{"Size", cluster_size_}, {"Sums", sums_}, {"Flags", occupied_flags_}});
     sample_compaction_.record(rec, occupied_flags_, occupied_, new_size_, cluster_size_);
-    rec.runIndirect(place_, new_size_, 0, params,
+    rec.runIndirect(place_, new_size_, params,
                     {{"NewSize", new_size_},
                      {"Occupied", occupied_},
                      {"Sums", sums_},
@@ -238,7 +231,8 @@ SamplesStage::Output SamplesStage::record(Recorder& rec, const RayStage& rays, c
                      {"Samples", samples_},
                      {"Spheres", spheres_},
                      {"Tenures", tenures_},
-                     {"KeptSize", kept_size_}});
+                     {"KeptSize", kept_size_},
+                     {"Clusters", clusters_}});
     rec.run(count_, 1, NoParams{}, {{"KeptSize", kept_size_}, {"NewSize", new_size_}, {"Size", size_}});
     return output();
 }

@@ -1,20 +1,14 @@
 // Irradiance samples: adaptive seeding over a quadtree of the picture (Algorithm 1), k-means clustering (Algorithm 2).
 #pragma once
+#include "runtime/choices.h"
 #include "runtime/stages/rays.h"
 #include "runtime/stages/tree.h"
 #include "shaders/samples/samples.h"
 
-enum class SamplesMode : uint32_t
-{
-    kUniform, // seeds follow the number of shading points
-    kSeeded,  // seeds follow geometric variation
-    kKmeans,  // the same, then moved by k-means
-};
-
 class SamplesStage
 {
 public:
-    SamplesStage(const Device& device, const SceneGpu& scene, uint32_t width, uint32_t height, uint32_t max_samples);
+    SamplesStage(const Device& device, uint32_t width, uint32_t height, uint32_t max_samples);
 
     struct Input
     {
@@ -22,7 +16,7 @@ public:
         SamplesMode mode;
         uint32_t budget;     // samples, <= max_samples
         uint32_t iterations; // of k-means
-        float alpha;         // of Eq. 2, per metre
+        float alpha;         // of Eq. 2, per view distance
         float reach;         // of a sample, in mean distances of its cluster's points to their centre
         uint32_t seed;
         /// Frames since all samples were new. Above 0, those of the last record() are kept that still own a point, with
@@ -73,7 +67,6 @@ private:
     void assign(Recorder& rec, const gpu::ClusterParams& params, const Buffer& points) const;
 
     uint32_t width_, height_;
-    float diagonal_; // of the scene, metres
     uint32_t stride_, levels_;
     uint32_t grid_count_,
         point_count_; // points of the quadtree's square; the first of them that hold all of the picture

@@ -1,12 +1,12 @@
 #include "runtime/stages/tree.h"
 
-std::array<uint32_t, 1> climbConstants(const Device& device)
+Constant climbConstant(const Device& device)
 {
-    return {device.isCpu() ? 0u : 1u};
+    return {"kFences", device.isCpu() ? 0u : 1u};
 }
 
 Tree::Tree(const Device& device, std::string_view name, uint32_t max_count)
-    : keys_kernel_(device.kernel("tree/keys")), hierarchy_(device.kernel("tree/hierarchy")), bounds_(device.kernel("tree/bounds", climbConstants(device))),
+    : keys_kernel_(device.kernel("tree/keys")), hierarchy_(device.kernel("tree/hierarchy")), bounds_(device.kernel("tree/bounds", {climbConstant(device)})),
       sort_(device, fmt::format("{}.sort", name), max_count), keys_(device.array<uint32_t>(fmt::format("{}.keys", name), max_count)),
       order_(device.array<uint32_t>(fmt::format("{}.order", name), max_count)),
       nodes_(device.texelArray<gpu::TreeNode>(fmt::format("{}.nodes", name), max_count)),
@@ -18,9 +18,14 @@ Tree::Tree(const Device& device, std::string_view name, uint32_t max_count)
 
 void Tree::record(Recorder& rec, const Buffer& spheres, const Buffer& size) const
 {
-    rec.runIndirect(keys_kernel_, size, 0, NoParams{}, {{"Size", size}, {"Spheres", spheres}, {"Keys", keys_}, {"Order", order_}});
-    sort_.record(rec, keys_, order_, size, gpu::kTreeKeyBits);
-    rec.runIndirect(hierarchy_, size, 0, NoParams{},
+    rec.runIndirect(keys_kernel_, size, NoParams{}, {{"Size", size}, {"Spheres", spheres}, {"Keys", keys_}, {"Order", order_}});
+    recordKeyed(rec, spheres, size, gpu::kTreeKeyBits);
+}
+
+void Tree::recordKeyed(Recorder& rec, const Buffer& spheres, const Buffer& size, uint32_t key_bits) const
+{
+    sort_.record(rec, keys_, order_, size, key_bits);
+    rec.runIndirect(hierarchy_, size, NoParams{},
                     {{"Size", size}, {"Keys", keys_}, {"Nodes", nodes_}, {"LeafParents", leaf_parents_}, {"NodeParents", node_parents_}});
     refit(rec, spheres, size);
 }
@@ -28,7 +33,7 @@ void Tree::record(Recorder& rec, const Buffer& spheres, const Buffer& size) cons
 void Tree::refit(Recorder& rec, const Buffer& spheres, const Buffer& size) const
 {
     rec.clear(arrivals_);
-    rec.runIndirect(bounds_, size, 0, NoParams{},
+    rec.runIndirect(bounds_, size, NoParams{},
                     {{"Size", size}, {"Spheres", spheres}, {"Order", order_}, {"LeafParents", leaf_parents_},
                      {"NodeParents", node_parents_}, {"Nodes", nodes_}, {"Arrivals", arrivals_}});
 }

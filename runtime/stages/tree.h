@@ -7,8 +7,8 @@
 
 #include <array>
 
-/// Specialization constants of kernels that climb a tree (lib/climb.glsl).
-std::array<uint32_t, 1> climbConstants(const Device& device);
+/// Of kernels that climb a tree (lib/climb.glsl).
+Constant climbConstant(const Device& device);
 
 class Tree
 {
@@ -20,9 +20,12 @@ public:
     /// @param spheres vec4[max_count]: centre and radius, metres; points have radius 0
     /// @param size gpu::QueueSize, ready for dispatch
     void record(Recorder& rec, const Buffer& spheres, const Buffer& size) const;
+    /// The same where a kernel has filled keys(), and order() with 0, 1, ...; nodes are the cells of the keys' prefixes.
+    void recordKeyed(Recorder& rec, const Buffer& spheres, const Buffer& size, uint32_t key_bits) const;
     /// The same tree after the spheres have moved a little: it holds them all, if no longer in the order of their keys.
     void refit(Recorder& rec, const Buffer& spheres, const Buffer& size) const;
 
+    const Buffer& keys() const { return keys_; }               // uint[count]
     const Buffer& nodes() const { return nodes_; }             // gpu::TreeNode[count - 1]
     const Buffer& order() const { return order_; }             // uint[count]: which sphere is the i-th of the sorted ones
     const Buffer& leafParents() const { return leaf_parents_; } // uint[count]: node | kTreeLeafBit where it is the right child

@@ -39,7 +39,7 @@ void ViewsStage::recordNonFinite(Recorder& rec, const Input& in) const
 void ViewsStage::markSamples(Recorder& rec, const gpu::ViewParams& params, const SamplesStage::Output& samples) const
 {
     rec.clear(marks_);
-    rec.runIndirect(kernel("views/mark_samples"), samples.size, 0, params,
+    rec.runIndirect(kernel("views/mark_samples"), samples.size, params,
                     {{"Size", samples.size}, {"Samples", samples.samples}, {"Marks", marks_}});
 }
 
@@ -78,7 +78,7 @@ void ViewsStage::recordPhotons(Recorder& rec, const Input& in, const PhotonTreeS
     rec.clear(marks_);
     const gpu::PhotonViewParams marking{.camera = in.camera,
                                         .most = std::max(pixelCount(in) / gpu::kViewPhotonShare, 1u)};
-    rec.runIndirect(kernel("views/mark_photons"), map.size, 0, marking,
+    rec.runIndirect(kernel("views/mark_photons"), map.size, marking,
                     {{"Size", map.size}, {"Photons", map.photons}, {"Points", in.points}, {"Marks", marks_}});
     rec.run(kernel("views/photons"), pixelCount(in), viewParams(in),
             {{"Marks", marks_}, {"Photons", map.photons}, {"Radiance", in.radiance}});

@@ -28,8 +28,8 @@ void main()
     vec3 reflectance = point.throughput * diffuseReflectance(b, max(0.0, -dot(s.normal, point.direction)));
     if (reflectance == vec3(0.0))
         return;
-    DensityEstimate estimate =
-        estimateIrradiance(s.position, s.geometric_normal, size.count, params.photon_count, square(params.radius),
-                           square(params.radius) / 16.0);
+    float radius = params.radius * viewDistance(s.position);
+    DensityEstimate estimate = estimateIrradiance(s.position, s.geometric_normal, size.count, params.photon_count,
+                                                  square(radius), square(radius) / 16.0);
     radiance[pixel] += reflectance * kInvPi * estimate.irradiance;
 }

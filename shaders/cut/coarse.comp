@@ -2,11 +2,14 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "shaders/cut/cut.h"
+#include "shaders/lib/trace.glsl"
 #include "shaders/lib/climb.glsl"
 
-// The coarse cut, bottom-up: a node is divided where both its children are candidates (E~ > E_min), where something below
-// it is, and where E~ would mean nothing. What is not divided, but below a divided node, is the cut: every photon then has
-// exactly one of its ancestors, or itself, in it (Algorithm 3, first half). One thread per photon.
+// The coarse cut, bottom-up: a node is divided where something below it is, where E~ would mean nothing (its photons face apart,
+// lie on different planes or on different sides of a wall), and where they lie unevenly. What is not divided, but below a divided
+// node, is the cut: every photon then has exactly one of its ancestors, or itself, in it. Algorithm 3 divides where both children
+// are brighter than E_min: that makes small nodes wherever it is bright, however even, and nodes as large as walls in a dim room
+// beside a bright one. One thread per photon.
 
 layout(local_size_x = kCutGroupSize) in;
 layout(push_constant, scalar) uniform Params { CutParams params; };
@@ -17,20 +20,22 @@ layout(set = 1, binding = 2) uniform usamplerBuffer Photons;
 layout(set = 1, binding = 3, scalar) readonly buffer LeafParents { uint leaf_parents[]; };
 layout(set = 1, binding = 4, scalar) readonly buffer NodeParents { uint node_parents[]; };
 layout(set = 1, binding = 5, scalar) readonly buffer Sums { PhotonSums sums[]; };
-layout(set = 1, binding = 6, scalar) readonly buffer Threshold { CutThreshold threshold; };
-layout(set = 1, binding = 7, scalar) coherent buffer Divided { uint divided[]; }; // by inner node, 0 before
-layout(set = 1, binding = 8, scalar) coherent buffer Arrivals { uint arrivals[]; }; // 0 before
+layout(set = 1, binding = 6, scalar) coherent buffer Divided { uint divided[]; }; // by inner node, 0 before
+layout(set = 1, binding = 7, scalar) coherent buffer Arrivals { uint arrivals[]; }; // 0 before
+layout(set = 1, binding = 8, scalar) writeonly buffer Ids { QueueSize ids; };       // of all nodes, 0 before
 #include "shaders/lib/photon_node.glsl"
 
-bool isCandidate(uint child)
-{
-    if ((child & kTreeLeafBit) != 0u)
-        return false;
-    PhotonNode node = photonNode(child);
-    return node.count >= fewestPhotons(params) && node.irradiance > threshold.irradiance;
-}
-
 bool isDivided(uint child) { return (child & kTreeLeafBit) == 0u && divided[child] != 0u; }
+
+/// Whether something stands between the halves of a node: it holds photons of two rooms.
+bool isWalled(PhotonNode node, uint left, uint right)
+{
+    vec3 a = photonNode(childId(left)).center, b = photonNode(childId(right)).center;
+    vec3 lift = node.normal * (kProbeHeight * max(node.longest, 0.5 * length(b - a)));
+    float distance = length(b - a);
+    bool met_translucent;
+    return distance > 0.0 && meetsOpaque(a + lift, (b - a) / distance, distance, met_translucent);
+}
 
 bool shouldDivide(uint node)
 {
@@ -38,17 +43,22 @@ bool shouldDivide(uint node)
     if (isDivided(left) || isDivided(right))
         return true;
     PhotonNode n = photonNode(node);
-    if (params.mode == kCutLeaves)
-        return n.count > fewestPhotons(params) || !n.flat_;
     if (!n.flat_)
-        return n.count > fewestPhotons(params);
-    return isCandidate(left) && isCandidate(right);
+        return true;
+    uint most = params.mode == kCutLeaves ? fewestPhotons(params) : max(kCutMost * params.photon_count, fewestPhotons(params));
+    if (n.count > most || (n.count > fewestPhotons(params) && isUneven(node, n, params.difference)))
+        return true;
+    return isWalled(n, left, right);
 }
 
 void main()
 {
     uint i = gl_GlobalInvocationID.x;
-    if (i >= size.count || size.count < 2u)
+    if (i >= size.count)
+        return;
+    if (i == 0u)
+        ids = queueSize(2u * size.count - 1u);
+    if (size.count < 2u)
         return;
     uint link = leaf_parents[i];
     while (true)

@@ -4,8 +4,8 @@
 #include "shaders/lib/cut_node.glsl"
 #include "shaders/lib/surface.glsl"
 
-// Gives a node at an edge, in a corner or on a thin column the light that it would spread beside the surface: its
-// irradiance is divided by the part of its disc that is there. One thread per node.
+// Gives a node at an edge, in a corner, at a wall or on a thin column the light that it would spread beside the surface or
+// behind the wall: its irradiance is divided by the part of its disc that is there and seen. One thread per node.
 
 layout(local_size_x = kCutGroupSize) in;
 layout(push_constant, scalar) uniform Params { ProbeParams params; };
@@ -17,33 +17,51 @@ layout(set = 1, binding = 3, scalar) buffer Nodes { CutNode nodes[]; };
 #include "shaders/lib/hit.glsl"
 #include "shaders/lib/ray.glsl"
 
-/// The node's weight where a ray came down, times the area that it stands for, against what a plane would have there: x where
-/// the ray met a surface's front, y where it met its back.
-vec2 covered(CutNode node, vec3 normal, Ray ray, Hit hit)
+const float kMostOfARay = 4.0; // a surface aslant counts for no more than this much of the plane
+
+/// The node's weight where a ray came down, times the area that it stands for, against what the node's plane would have there.
+float covered(CutNode node, vec3 normal, Ray ray, Hit hit)
 {
     if (hit.slot == kNone)
-        return vec2(0.0);
+        return 0.0;
     Surface s = surfaceAt(hit.slot, hit.barycentrics, ray.direction);
-    vec3 on_plane = ray.origin - normal * dot(ray.origin - node.center, normal);
-    float weight = cutWeight(node, s.position, s.geometric_normal) /
-                   (max(cutWeight(node, on_plane, normal), 1e-3) * max(dot(s.geometric_normal, normal), 0.2));
-    bool front = s.front || (loadMaterial(s.material).flags & kMaterialDoubleSided) != 0u;
-    return front ? vec2(weight, 0.0) : vec2(0.0, weight);
+    float down = -dot(ray.direction, normal), to_plane = dot(ray.origin - node.center, normal) / down;
+    float weight = cutWeight(node, s.position, s.geometric_normal);
+    float on_plane = cutWeight(node, ray.origin + to_plane * ray.direction, normal);
+    float area = square(hit.t / to_plane) * down / max(-dot(s.geometric_normal, ray.direction), 1e-3);
+    return min(weight / max(on_plane, 1e-3) * area, kMostOfARay);
+}
+
+/// 1 / the mean of n independent numbers, without bias where they are 0 or 1: the mean of (n + 1) / (sum + 1) is that. As far as
+/// their variance is more than that of zeros and ones, by its first order.
+float inverseMean(float n, float sum, float squares)
+{
+    float mean = max(sum / n, 0.5 / n), variance = squares / n - square(sum / n);
+    float excess = max(0.0, variance - mean * (1.0 - mean));
+    return (n + 1.0) / ((sum + 1.0) * (1.0 + excess / (n * square(mean))));
 }
 
 void main()
 {
     uint i = gl_GlobalInvocationID.x;
-    uint ray_count = probeCount(size.count, params.ray_count);
-    if (i >= size.count || ray_count == 0u)
+    ProbeParams probes = probesFor(size.count, params);
+    uint first = i * (probes.ray_count + probes.rim_count), rim = first + probes.ray_count;
+    if (i >= size.count || probes.ray_count == 0u)
         return;
     CutNode node = nodes[i];
-    vec3 normal = unpackNormal(node.normal);
-    vec2 sums = vec2(0.0);
-    for (uint k = i * ray_count; k < (i + 1u) * ray_count; ++k)
-        sums += covered(node, normal, loadRay(k), loadHit(k));
-    // Backs are the inside of something solid, unless they are most of what there is: photons lie on backs, too.
-    float sum = max(sums.x, sums.y);
-    // (n + 1) / (sum + 1): of n independent rays its mean is 1 / the part that is there, not more.
-    nodes[i].irradiance *= min(float(ray_count + 1u) / (sum + 1.0), kMostUncovered);
+    vec3 normal = cutNormal(node);
+    float sum = 0.0, squares = 0.0;
+    for (uint k = first; k < rim; ++k)
+    {
+        float part = covered(node, normal, loadRay(k), loadHit(k));
+        sum += part;
+        squares += part * part;
+    }
+    bool is_clear = probes.rim_count > 0u && sum > float(probes.ray_count) - 0.5;
+    for (uint k = rim; is_clear && k < rim + probes.rim_count; ++k)
+        is_clear = loadHit(k).slot == kNone;
+    if (is_clear) // all of its disc is there and seen: nobody need ask
+        nodes[i].normal_and_eye |= kCutIsClear;
+    else
+        nodes[i].irradiance *= inverseMean(float(probes.ray_count), sum, squares);
 }

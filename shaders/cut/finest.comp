@@ -21,18 +21,6 @@ layout(set = 1, binding = 8, scalar) writeonly buffer Members { uint members[]; 
 layout(set = 1, binding = 9, scalar) writeonly buffer Finals { CutNode finals[]; }; // by id
 #include "shaders/lib/spread.glsl"
 
-float evenRadius(uint id, PhotonNode node)
-{
-    while (node.count <= kCutFewest)
-    {
-        if (id == 0u)
-            return params.radius; // so few photons say nothing of their density
-        id = (isPhoton(id) ? leaf_parents[id + 1u - size.count] : node_parents[id]) & ~kTreeLeafBit;
-        node = photonNode(id);
-    }
-    return min(params.radius, sqrt(kInvPi * node.area * float(params.photon_count) / float(node.count)));
-}
-
 void main()
 {
     uint i = gl_GlobalInvocationID.x;
@@ -41,5 +29,5 @@ void main()
     uint id = work[i];
     PhotonNode node = photonNode(id);
     members[id] = 1u;
-    finals[id] = spreadNode(id, node, params.spread * evenRadius(id, node));
+    finals[id] = spreadNode(id, node, params.spread * evenRadius(id, node, params));
 }

@@ -22,6 +22,8 @@ layout(set = 1, binding = 6, scalar) buffer NextSize { QueueSize next_size; };
 layout(set = 1, binding = 7, scalar) writeonly buffer Next { uint next[]; };
 layout(set = 1, binding = 8, scalar) writeonly buffer Members { uint members[]; };  // by id: 1 where final
 layout(set = 1, binding = 9, scalar) writeonly buffer Finals { CutNode finals[]; }; // by id
+layout(set = 1, binding = 10, scalar) readonly buffer LeafParents { uint leaf_parents[]; };
+layout(set = 1, binding = 11, scalar) readonly buffer NodeParents { uint node_parents[]; };
 #include "shaders/lib/density.glsl"
 #include "shaders/lib/spread.glsl"
 
@@ -40,25 +42,26 @@ void main()
     uint id = work[i];
     PhotonNode node = photonNode(id);
     // A node of few photons is not worth dividing: its children's estimates would share nearly all of theirs.
-    bool small = node.count < 2u * fewestPhotons(params);
-    if (params.last == 0u && !small && !node.flat_)
+    bool is_last = params.last != 0u || node.count < 2u * fewestPhotons(params);
+    float even = evenRadius(id, node, params);
+    DensityEstimate estimate = DensityEstimate(vec3(0.0), 0.0);
+    if (!is_last || params.mode == kCutNearest)
     {
-        divide(id);
-        return;
-    }
-    // As if the node's photons lay evenly over its area; half as many again, so that one look mostly suffices.
-    float guess2 = 1.5 * kInvPi * node.area * float(params.photon_count) / float(node.count);
-    DensityEstimate estimate = estimateIrradiance(node.center, node.normal, size.count, params.photon_count, square(params.radius),
-                                                  guess2 > 0.0 ? guess2 : square(params.radius) / 64.0);
-    float exact = luminance(estimate.irradiance);
-    bool agrees = abs(exact - node.irradiance) <= params.difference * max(exact, node.irradiance);
-    if (params.last == 0u && !small && !agrees)
-    {
-        divide(id);
-        return;
+        // Half as many again, so that one look mostly suffices.
+        estimate = estimateIrradiance(node.center, node.normal, size.count, params.photon_count, square(reachAt(node.center, params)),
+                                      1.5 * square(even));
+        float exact = luminance(estimate.irradiance);
+        float chance = kBeyondChance * sqrt(node.noise2 + 1.2 / float(params.photon_count));
+        if (!is_last && abs(exact - node.irradiance) > max(params.difference, chance) * max(exact, node.irradiance))
+        {
+            divide(id);
+            return;
+        }
     }
     members[id] = 1u;
-    finals[id] = spreadNode(id, node, params.spread * max(node.longest, sqrt(estimate.radius2)));
+    // A larger node covers at least itself; few photons far apart say little of what lies between them.
+    float reach = node.count > kCutFewest ? max(node.longest, even) : even;
+    finals[id] = spreadNode(id, node, params.spread * reach);
     if (params.mode == kCutNearest)
         finals[id].irradiance = estimate.irradiance;
 }

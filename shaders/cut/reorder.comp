@@ -11,11 +11,15 @@ layout(set = 1, binding = 0, scalar) readonly buffer Size { QueueSize size; };
 layout(set = 1, binding = 1, scalar) readonly buffer Ids { uint ids[]; };
 layout(set = 1, binding = 2, scalar) readonly buffer Order { uint order[]; };
 layout(set = 1, binding = 3, scalar) readonly buffer Finals { CutNode finals[]; };
-layout(set = 1, binding = 4, scalar) writeonly buffer Nodes { CutNode nodes[]; };
+layout(set = 1, binding = 4, scalar) readonly buffer Directions { uint directions[]; };
+layout(set = 1, binding = 5, scalar) writeonly buffer Nodes { CutNode nodes[]; };
+layout(set = 1, binding = 6, scalar) writeonly buffer NodeDirections { uint node_directions[]; };
 
 void main()
 {
     uint i = gl_GlobalInvocationID.x;
-    if (i < size.count)
-        nodes[i] = finals[ids[order[i]]];
+    if (i >= size.count)
+        return;
+    nodes[i] = finals[ids[order[i]]];
+    node_directions[i] = directions[order[i]];
 }

@@ -2,22 +2,27 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "shaders/cut/cut.h"
+#include "shaders/lib/trace.glsl"
+#include "shaders/lib/cut_node.glsl"
 #include "shaders/lib/random.glsl"
 
-// Whence light comes at every node of the cut: the direction of one of its photons, chosen by power, so that on average over
-// nodes and frames every photon speaks for what it carries (Walter et al. 2005, representative lights). One thread per node.
+// What every node of the cut needs beside its power: the direction of one of its photons, chosen by power, so that on average
+// over nodes and frames each photon counts for what it carries (Walter et al. 2005, representative lights), and the point from
+// which its disc is seen. The mean of photons around a column, or on both sides of a wall's foot, lies inside it: such a node
+// is centred on the chosen photon. One thread per node.
 
 layout(local_size_x = kCutGroupSize) in;
 layout(push_constant, scalar) uniform Params { RepresentParams params; };
 
 layout(set = 1, binding = 0, scalar) readonly buffer CutSize { QueueSize cut_size; };
 layout(set = 1, binding = 1, scalar) readonly buffer Ids { uint ids[]; };
-layout(set = 1, binding = 2, scalar) readonly buffer Order { uint order[]; };
-layout(set = 1, binding = 3, scalar) readonly buffer Size { QueueSize size; }; // photons
-layout(set = 1, binding = 4) uniform usamplerBuffer TreeNodes;                 // over them
-layout(set = 1, binding = 5) uniform usamplerBuffer Photons;
-layout(set = 1, binding = 6, scalar) readonly buffer Sums { PhotonSums sums[]; };
-layout(set = 1, binding = 7, scalar) writeonly buffer Directions { uint directions[]; };
+layout(set = 1, binding = 2, scalar) readonly buffer Size { QueueSize size; }; // photons
+layout(set = 1, binding = 3) uniform usamplerBuffer TreeNodes;                 // over them
+layout(set = 1, binding = 4) uniform usamplerBuffer Photons;
+layout(set = 1, binding = 5, scalar) readonly buffer Sums { PhotonSums sums[]; };
+layout(set = 1, binding = 6, scalar) buffer Finals { CutNode finals[]; };           // by id
+layout(set = 1, binding = 7, scalar) writeonly buffer Spheres { vec4 spheres[]; };  // by node
+layout(set = 1, binding = 8, scalar) writeonly buffer Directions { uint directions[]; }; // by node
 #include "shaders/lib/photon_node.glsl"
 
 float weightOf(uint id)
@@ -25,12 +30,9 @@ float weightOf(uint id)
     return isPhoton(id) ? luminance(loadPhoton(id + 1u - size.count).power) : sums[id].weight;
 }
 
-void main()
+/// One of the node's photons, by power.
+Photon chosenPhoton(uint id)
 {
-    uint i = gl_GlobalInvocationID.x;
-    if (i >= cut_size.count)
-        return;
-    uint id = ids[order[i]];
     float u = toUnitFloat(hash(params.seed, id));
     while (!isPhoton(id))
     {
@@ -40,5 +42,45 @@ void main()
         u = clamp(goes_left ? u / share : (u - share) / (1.0 - share), 0.0, 0.9999999);
         id = goes_left ? left : right;
     }
-    directions[i] = loadPhoton(id + 1u - size.count).direction;
+    return loadPhoton(id + 1u - size.count);
+}
+
+/// How high above a photon the disc of a node around it is seen from: half way to what is above it, where that is near.
+float heightAbove(vec3 position, vec3 normal, float support)
+{
+    float most = kProbeHeight * support;
+    return 0.5 * closestHit(offsetOrigin(position, normal), normal, kRayStart, 2.0 * most, params.seed).t;
+}
+
+bool isFree(vec3 from, vec3 to)
+{
+    float distance = length(to - from);
+    bool met_translucent;
+    return distance == 0.0 || !meetsOpaque(from, (to - from) / distance, distance, met_translucent);
+}
+
+void main()
+{
+    uint i = gl_GlobalInvocationID.x;
+    if (i >= cut_size.count)
+        return;
+    uint id = ids[i];
+    Photon photon = chosenPhoton(id);
+    CutNode node = finals[id];
+    if (params.is_probed != 0u)
+    {
+        vec3 normal = cutNormal(node);
+        float height = heightAbove(photon.position, normal, node.support);
+        vec3 eye = photon.position + height * normal;
+        // At the same height: the mean of photons on a bent surface lies below it.
+        vec3 center = node.center + dot(photon.position - node.center, normal) * normal;
+        if (isFree(eye, center + height * normal))
+            height = max(height + dot(photon.position - node.center, normal), 0.0);
+        else
+            node.center = photon.position;
+        finals[id].center = node.center;
+        finals[id].normal_and_eye = packCutNormal(normal, max(height, 1e-6 * node.support), node.support);
+    }
+    spheres[i] = vec4(node.center, node.support);
+    directions[i] = photon.direction;
 }

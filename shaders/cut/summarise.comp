@@ -5,7 +5,7 @@
 #include "shaders/lib/climb.glsl"
 
 // Power, normal and position sums of every inner node, from the photons up: whoever arrives second at a node goes on with
-// it. Two summands a node: their order does not matter. One thread per photon.
+// it. One thread per photon.
 
 layout(local_size_x = kCutGroupSize) in;
 
@@ -24,6 +24,7 @@ void main()
     if (i >= size.count || size.count < 2u)
         return;
     PhotonSums total = photonSums(i);
+    uint count = 1u; // photons of total
     uint link = leaf_parents[i];
     while (true)
     {
@@ -34,13 +35,19 @@ void main()
         fence();
         uint sibling = (link & kTreeLeafBit) != 0u ? loadTreeNode(node).left : loadTreeNode(node).right;
         uint index = sibling & ~kTreeLeafBit;
+        bool leaf = (sibling & kTreeLeafBit) != 0u;
         PhotonSums other;
-        if ((sibling & kTreeLeafBit) != 0u)
+        if (leaf)
             other = photonSums(index);
         else
             other = sums[index];
-        total = PhotonSums(total.power + other.power, total.weight + other.weight, total.normal + other.normal,
-                           total.position + other.position);
+        uint other_count = leaf ? 1u : loadTreeNode(index).count;
+        // The left child first: equal bits whoever arrives second.
+        if ((link & kTreeLeafBit) != 0u)
+            total = joined(other, other_count, total, count);
+        else
+            total = joined(total, count, other, other_count);
+        count += other_count;
         sums[node] = total;
         if (node == 0u)
             return;

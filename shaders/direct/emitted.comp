@@ -47,12 +47,12 @@ void main()
     Hit hit = loadHit(i);
     vec3 through = vec3(1.0);
     vec3 light = emittedLight(hit, ray.direction, emitter_rays[i].pdf);
-    for (uint layer = 1u; kSceneHasThin && hit.slot != kNone && layer <= kMaxLayers; ++layer)
+    while (kSceneHasThin && hit.slot != kNone)
     {
         through *= thinTransmittance(hit, ray.direction);
         if (through == vec3(0.0))
             break;
-        hit = closestHit(ray.origin, ray.direction, hit.t, kInfinity, hash(params.seed + layer, ray.path));
+        hit = closestHit(ray.origin, ray.direction, Place(hit.t, hitRank(hit.slot)), kInfinity, hash(params.seed, ray.path));
         light += through * emittedLight(hit, ray.direction, emitter_rays[i].pdf);
     }
     if (light != vec3(0.0))

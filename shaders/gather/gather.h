@@ -39,7 +39,7 @@ struct GatherParams
     uint depth_limit;
     uint mode;        // kCut*
     uint photon_count; // k, in mode kCutKnn
-    float radius;     // metres: of density estimation, and how far a cut node may be
+    float radius;     // of density estimation at most, in mode kCutKnn: of the distance from the viewer
 };
 GPU_SIZE(GatherParams, 28);
 

@@ -21,7 +21,7 @@ void main()
     uint i = gl_GlobalInvocationID.x;
     uint count = (size.count - kept_size.count) * params.ray_count;
     if (i == 0u)
-        queue = QueueSize(uvec3((count + kRaysGroupSize - 1u) / kRaysGroupSize, 1u, 1u), count);
+        queue = queueSize(count);
     if (i >= count)
         return;
     uint new_sample = i / params.ray_count, sample_ = kept_size.count + new_sample;

@@ -26,7 +26,7 @@ layout(set = 1, binding = 10, scalar) readonly buffer Directions { uint directio
 Incident lightAt(vec3 x, vec3 n, uint random)
 {
     if (params.mode == kCutNearest)
-        return nearestCutLight(x, n, params.radius * params.radius);
+        return nearestCutLight(x, n, kInfinity);
     return cutLight(x, n, random);
 }
 #include "shaders/lib/gather_link.glsl"

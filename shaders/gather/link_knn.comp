@@ -21,11 +21,12 @@ layout(set = 1, binding = 9) uniform usamplerBuffer Photons;
 #include "shaders/lib/hit.glsl"
 #include "shaders/lib/ray.glsl"
 #include "shaders/lib/density.glsl"
+#include "shaders/lib/view_scale.glsl"
 
 Incident lightAt(vec3 x, vec3 n, uint random)
 {
-    return densityLight(x, n, size.count, params.photon_count, params.radius * params.radius,
-                        params.radius * params.radius / 64.0, random);
+    float radius2 = square(params.radius * viewDistance(x));
+    return densityLight(x, n, size.count, params.photon_count, radius2, radius2 / 256.0, random);
 }
 #include "shaders/lib/gather_link.glsl"
 #include "shaders/gather/link_body.glsl"

@@ -46,7 +46,11 @@ void main()
         u = (vec2(place % kGuideSide, place / kGuideSide) + u) / float(kGuideSide);
     uint light = beam ? groups.beam_lights[group]
                       : otherLight((float(place) + pick) / float(kGuideCells) * groups.shares[group]);
-    Emission emission = emitFrom(loadLight(light), 0.0, false, 0u, u, v, sampler_);
+    Emission emission;
+    if (beam)
+        emission = emitBeam(loadLight(light), u, v, sampler_);
+    else
+        emission = emitFrom(loadLight(light), 0.0, false, 0u, u, v, sampler_);
     bool leaves = emission.power != vec3(0.0);
     cells[path] = leaves ? cell : kNone;
     float weight = leaves ? cellShare(cell) / cellProbability(cell) : 0.0;

@@ -5,15 +5,16 @@
 
 GPU_NAMESPACE_BEGIN
 
-// What photons may leave by is divided into groups of cells that are equally likely by the lights' own distributions: each
-// beam (sun or environment, whose photons start on a disc as wide as the scene) is a group whose cells divide that disc,
-// all other lights together are the last one, whose cells divide their power.
+// What photons may leave by is divided into groups of cells: each beam (sun or environment, whose photons start on a plane as wide
+// as the scene) is a group whose cells divide that plane, smaller ones where the viewer is (lib/emission.glsl); all other lights
+// together are the last one, whose cells divide their power. Unless something was learned, groups are equally likely, for the
+// power of a beam says nothing of how much of it is seen, and so are the cells of each.
 GPU_CONST uint kGuideSide = 32u;
 GPU_CONST uint kGuideCells = kGuideSide * kGuideSide; // of a group
 GPU_CONST uint kGuideBeams = 7u;                      // that have a group of their own at most
 GPU_CONST uint kGuideGroups = kGuideBeams + 1u;       // the last is that of the other lights
 GPU_CONST uint kGuideTotal = kGuideGroups * kGuideCells;
-GPU_CONST uint kGuideVoxels = 64u;                    // each way, over the scene's box
+GPU_CONST uint kGuideVoxels = 64u;                    // each way, over the grid of lib/morton.glsl
 GPU_CONST uint kGuideSides = 6u;                      // of a voxel: both sides of a thin wall may not both be wanted
 GPU_CONST uint kGuidePlaces = kGuideSides * kGuideVoxels * kGuideVoxels * kGuideVoxels;
 GPU_CONST uint kGuideMarkStride = 4u;                 // of this many gathering rays one tells where light is wanted
@@ -21,15 +22,16 @@ GPU_CONST uint kGuideMostWanted = 1023u;              // rays that a place count
 GPU_CONST uint kGuideGroupSize = 64u;
 GPU_CONST uint kGuideLearnSize = 256u;
 
-GPU_CONST float kGuideUnguided = 0.35f; // part of the photons that leaves by the lights' own distributions: none weighs 3 times as much
+GPU_CONST float kGuideUnguided = 0.35f; // part of the photons that leaves as if nothing was learned: few weigh 3 times as much
 GPU_CONST float kGuideMemory = 0.75f;  // of what was learned before, a frame
 
 struct GuideGroups // which lights they are; fixed for a scene
 {
     uint beam_lights[kGuideBeams]; // light index; kNone: no such group
     float shares[kGuideGroups];    // of all power
+    float unlearned[kGuideGroups]; // probability that a photon leaves by the group where nothing was learned
 };
-GPU_SIZE(GuideGroups, 60);
+GPU_SIZE(GuideGroups, 92);
 
 struct GuideScore
 {
@@ -47,11 +49,9 @@ GPU_SIZE(GuideDistribution, 32800);
 
 struct ScoreParams
 {
-    uint path_count;
-    uint bounce_limit;
     float scale; // of the fixed-point scores
 };
-GPU_SIZE(ScoreParams, 12);
+GPU_SIZE(ScoreParams, 4);
 
 GPU_NAMESPACE_END
 #endif

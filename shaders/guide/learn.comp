@@ -41,8 +41,8 @@ void main()
     float unguided = total > 0.0 ? kGuideUnguided : 1.0;
 
     // Probabilities of this group's cells in proportion to these weights.
-    float even = unguided * groups.shares[group] / float(kGuideCells);
-    float of_group = guided * sumOfRuns(group * kGroupRuns, (group + 1u) * kGroupRuns) + unguided * groups.shares[group];
+    float even = unguided * groups.unlearned[group] / float(kGuideCells);
+    float of_group = guided * sumOfRuns(group * kGroupRuns, (group + 1u) * kGroupRuns) + unguided * groups.unlearned[group];
     float running = guided * sumOfRuns(group * kGroupRuns, run) + even * float((run % kGroupRuns) * kRun);
     for (uint i = first; i < first + kRun; ++i)
     {
@@ -54,6 +54,6 @@ void main()
         return;
     float before = guided * sumOfRuns(0u, (run + 1u) * kGroupRuns); // of this thread as a group
     for (uint g = 0u; g <= run; ++g)
-        before += unguided * groups.shares[g];
+        before += unguided * groups.unlearned[g];
     distribution.groups[run] = run + 1u == kGuideGroups ? 1.0 : before;
 }

@@ -12,22 +12,23 @@ layout(set = 1, binding = 0, scalar) readonly buffer Groups { GuideGroups groups
 layout(set = 1, binding = 1, scalar) readonly buffer Distribution { GuideDistribution distribution; };
 layout(set = 1, binding = 2, scalar) readonly buffer Cells { uint cells[]; }; // by path; kNone: nothing left
 layout(set = 1, binding = 3, scalar) readonly buffer Photons { Photon photons[]; };
-layout(set = 1, binding = 4, scalar) readonly buffer Flags { uint flags[]; };
-layout(set = 1, binding = 5, scalar) readonly buffer Wanted { uint wanted[]; };
-layout(set = 1, binding = 6, scalar) buffer Scores { GuideScore scores[]; };
+layout(set = 1, binding = 4, scalar) readonly buffer Slots { uint slots[]; };
+layout(set = 1, binding = 5, scalar) readonly buffer Offsets { uint offsets[]; }; // by path
+layout(set = 1, binding = 6, scalar) readonly buffer Counts { uint counts[]; };   // likewise
+layout(set = 1, binding = 7, scalar) readonly buffer Store { PhotonStore store; };
+layout(set = 1, binding = 8, scalar) readonly buffer Wanted { uint wanted[]; };
+layout(set = 1, binding = 9, scalar) buffer Scores { GuideScore scores[]; };
 #include "shaders/lib/guide.glsl"
 
 void main()
 {
     uint path = gl_GlobalInvocationID.x;
-    if (path >= params.path_count || cells[path] == kNone)
+    if (path >= store.path_count || cells[path] == kNone)
         return;
     uint count = 0u;
-    for (uint n = 0u; n < params.bounce_limit; ++n)
+    for (uint n = offsets[path]; n < offsets[path] + counts[path]; ++n)
     {
-        uint slot = n * params.path_count + path;
-        if (flags[slot] == 0u)
-            break; // a path stores its photons in order
+        uint slot = slots[n];
         count += min(wanted[placeOf(photons[slot].position, unpackNormal(photons[slot].normal))], kGuideMostWanted);
     }
     if (count == 0u)

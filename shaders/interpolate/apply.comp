@@ -6,11 +6,12 @@
 #include "shaders/lib/math.glsl"
 #include "shaders/lib/tile.glsl"
 #include "shaders/lib/variation.glsl"
+#include "shaders/lib/view_scale.glsl"
 
 // Indirect diffuse light of every pixel from the samples whose support holds its shading point. One thread per run of
 // kRun neighbouring pixels: they share one search, which finds what any of them needs, and what it loads.
 
-layout(constant_id = 0) const uint kRun = 1u;
+layout(constant_id = 3) const uint kRun = 1u;
 
 layout(local_size_x = kRaysGroupSize) in;
 layout(push_constant, scalar) uniform Params { InterpolateParams params; };
@@ -24,6 +25,8 @@ layout(set = 1, binding = 5, scalar) buffer Statistics { InterpolateStatistics s
 #include "shaders/lib/diffuse_point.glsl"
 #include "shaders/lib/sample.glsl"
 #include "shaders/lib/tree.glsl"
+
+const float kFarthest = 1e6; // of Eq. 2: farther than any sample
 
 // The pixels of a run. Loops over them are unrolled: arrays that stay in registers.
 vec3 x[kRun], n[kRun], reflectance[kRun];
@@ -50,11 +53,11 @@ bool loadRun(uint pixel, out vec3 low, out vec3 high)
     return low.x <= high.x;
 }
 
-/// Gives the pixels that no sample accepts the irradiance of the sample of least variation within params.radius.
+/// Gives the pixels that no sample accepts the irradiance of the sample of least variation.
 void takeNearest(vec3 low, vec3 high)
 {
     float best[kRun];
-    float farthest = params.alpha * params.radius + 2.0;
+    float alpha = params.alpha / view_scale.distance, farthest = kFarthest;
     uint missing = 0u;
     [[unroll]] for (uint k = 0u; k < kRun; ++k)
     {
@@ -66,14 +69,14 @@ void takeNearest(vec3 low, vec3 high)
         return;
     uint first, end;
     beginRanges(size.count);
-    while (nextRange(low, high, square(min(params.radius, farthest / params.alpha)), first, end))
+    while (nextRange(low, high, square(farthest / alpha), first, end))
         for (uint i = first; i < end; ++i)
         {
             SampleTexels s = loadSample(i);
             farthest = 0.0;
             [[unroll]] for (uint k = 0u; k < kRun; ++k)
             {
-                float eps = geometricVariation(params.alpha, x[k], n[k], s.position, s.normal);
+                float eps = geometricVariation(alpha, x[k], n[k], s.position, s.normal);
                 if (eps < best[k])
                 {
                     best[k] = eps;

@@ -20,16 +20,15 @@ struct InterpolateParams
 {
     uint point_count;
     uint width;   // of the picture, pixels
-    float alpha;  // of Eq. 2, per metre, where no sample is accepted
-    float radius; // metres: how far a sample may be there
+    float alpha;  // of Eq. 2, per view distance, where no sample is accepted
     uint white;   // 1: as if every surface reflected all of it
 };
-GPU_SIZE(InterpolateParams, 20);
+GPU_SIZE(InterpolateParams, 16);
 
 struct InterpolateStatistics
 {
     uint fallbacks; // pixels where no sample was accepted and the one of least variation was taken
-    uint unlit;     // pixels without any sample in reach
+    uint unlit;     // pixels without any sample
 };
 GPU_SIZE(InterpolateStatistics, 8);
 

@@ -1,6 +1,7 @@
 // The glTF BSDF: Lambert under a GGX dielectric layer, GGX metal, smooth and rough dielectric transmission.
 // glTF 2.0 appendix B (separable Smith masking, Schlick Fresnel), KHR_materials_specular, _ior, _transmission, _volume.
-// Directions are local: z along the shading normal on the viewer's side, wo.z > 0. Functions only.
+// Directions are local: z along the shading normal on the viewer's side, wo.z > 0 but for matter without specular lobes.
+// Functions only.
 #ifndef LIB_BSDF_GLSL
 #define LIB_BSDF_GLSL
 #include "shaders/lib/lobe_reflectance.h"
@@ -210,11 +211,11 @@ BsdfValue evaluateBsdf(Bsdf b, vec3 wo, vec3 wi)
     LobeProbabilities p = lobeProbabilities(b, wo.z);
     if (wi.z > 0.0)
     {
-        vec3 h = normalize(wo + wi);
-        value.diffuse = belowColor(b, dot(wo, h)) * (1.0 - b.transmission) * kInvPi;
+        float cosine = sqrt(max(0.0, 0.5 + 0.5 * dot(wo, wi))); // of the half vector
+        value.diffuse = belowColor(b, cosine) * (1.0 - b.transmission) * kInvPi;
         value.pdf = p.diffuse * wi.z * kInvPi;
     }
-    if (!hasFeature(kFeatureSpecular) || b.smooth_specular)
+    if (!hasFeature(kFeatureSpecular) || b.smooth_specular || wo.z <= 0.0)
         return value;
     if (wi.z > 0.0 || b.thin)
         addReflection(b, p, wo, wi, value);

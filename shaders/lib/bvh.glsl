@@ -1,6 +1,5 @@
-// Ray traversal of the 4-wide tree: the one closest-hit and the one any-hit routine, geometry only. What translucent
-// surfaces do to a ray is decided outside these loops (lib/trace.glsl): texture lookups inside them would cost every ray
-// registers, and software Vulkan, which runs both sides of every branch, most of its speed. Functions only.
+// Ray traversal of the 4-wide tree, down to its leaves, and the triangle test. The loops over leaves, which know what
+// translucent surfaces do to a ray, are in lib/trace.glsl. Functions only.
 #ifndef LIB_BVH_GLSL
 #define LIB_BVH_GLSL
 #include "shaders/lib/math.glsl"
@@ -36,13 +35,13 @@ BoxRay boxRay(vec3 origin, vec3 direction)
 
 vec4 nodeRow(uint row) { return uintBitsToFloat(texelFetch(bvh_nodes, int(row))); }
 
-/// Entry distances of a ray into a node's four boxes; kInfinity where it misses.
-vec4 hitBoxes(uint node, BoxRay ray, float t_max)
+/// Entry distances of a ray into a node's four boxes; kInfinity where it misses them between t_min and t_max.
+vec4 hitBoxes(uint node, BoxRay ray, float t_min, float t_max)
 {
     uint row = node * kBvhNodeRows;
     uvec3 near = row + ray.near_row, far = row + (ray.near_row ^ 1u);
     vec4 enter = max(max(nodeRow(near.x) * ray.inverse.x - ray.near_shift.x, nodeRow(near.y) * ray.inverse.y - ray.near_shift.y),
-                     max(nodeRow(near.z) * ray.inverse.z - ray.near_shift.z, vec4(0.0)));
+                     max(nodeRow(near.z) * ray.inverse.z - ray.near_shift.z, vec4(t_min)));
     vec4 leave = min(min(nodeRow(far.x) * ray.inverse.x - ray.far_shift.x, nodeRow(far.y) * ray.inverse.y - ray.far_shift.y),
                      min(nodeRow(far.z) * ray.inverse.z - ray.far_shift.z, vec4(t_max)));
     return mix(vec4(kInfinity), enter, lessThanEqual(enter, leave));
@@ -63,32 +62,75 @@ TriangleRay triangleRay(vec3 origin, vec3 direction)
     return TriangleRay(origin, direction, frame[0], frame[1]);
 }
 
-/// Watertight along shared edges and at shared corners (Woop et al. 2013, "Watertight Ray/Triangle Intersection"): a
-/// corner has one projection for all its triangles, and the sign of an edge function is that of the exact difference, or
-/// 0, which counts as inside. Contraction to fused multiply-adds would break that, hence `precise`.
-/// @return whether it is met between t_min (exclusive) and hit.t, which then is it
-bool hitTriangle(uint slot, TriangleRay ray, float t_min, inout Hit hit)
+/// One place of a ray's way: triangles are met in the order of distance, and of rank where that is equal. No two are met at
+/// one place, however many lie in one plane, and none is lost where a ray goes on behind another.
+struct Place
+{
+    float t;   // metres
+    uint rank; // hitRank()
+};
+
+/// What has alpha comes first, so that a decal in the plane of a wall lies on it; then the scene's order. Spatial splits may
+/// store one triangle in several slots: its rank is one.
+uint hitRank(uint triangle, uint flags)
+{
+    return kSceneHasAlpha && (flags & kTriangleAlpha) == 0u ? triangle | 0x80000000u : triangle;
+}
+uint hitRank(uint slot) { return hitRank(loadBvhTriangle(slot).triangle, loadBvhTriangle(slot).flags); }
+
+/// Before everything at a distance greater than 0.
+const Place kRayStart = Place(0.0, 0xffffffffu);
+
+bool isBefore(Place a, Place b) { return a.t < b.t || (a.t == b.t && a.rank < b.rank); }
+
+/// Weights of a triangle's corners where the ray passes it, times some number: of v1, v2, v0. Watertight along shared edges
+/// and at shared corners (Woop et al. 2013, "Watertight Ray/Triangle Intersection"): a corner has one projection for all its
+/// triangles, and each sign is that of the exact difference, or 0. Contraction to fused multiply-adds would break that, hence
+/// `precise`.
+/// @param a b c corners relative to the ray's origin
+vec3 edgeFunctions(TriangleRay ray, vec3 a, vec3 b, vec3 c)
+{
+    vec3 px = vec3(a.x, b.x, c.x), py = vec3(a.y, b.y, c.y), pz = vec3(a.z, b.z, c.z);
+    precise vec3 x = fma(vec3(ray.x.x), px, fma(vec3(ray.x.y), py, ray.x.z * pz)); // of the corners' projections
+    precise vec3 y = fma(vec3(ray.y.x), px, fma(vec3(ray.y.y), py, ray.y.z * pz));
+    precise float u = x.x * y.z - x.z * y.x;
+    precise float v = x.y * y.x - x.x * y.y;
+    precise float w = x.z * y.y - x.y * y.z;
+    return vec3(u, v, w);
+}
+
+/// 0 counts as inside. The distance is `precise`, too: it must be one in all kernels.
+/// @return whether it is met between two places (both exclusive); then `hit` and `end` are it
+bool hitTriangle(uint slot, TriangleRay ray, Place start, inout Place end, inout Hit hit)
 {
     vec3 a = loadBvhTriangle(slot).v0 - ray.origin;
     vec3 b = loadBvhTriangle(slot).v1 - ray.origin;
     vec3 c = loadBvhTriangle(slot).v2 - ray.origin;
-    vec3 px = vec3(a.x, b.x, c.x), py = vec3(a.y, b.y, c.y), pz = vec3(a.z, b.z, c.z);
-    precise vec3 x = fma(vec3(ray.x.x), px, fma(vec3(ray.x.y), py, ray.x.z * pz)); // of the corners' projections
-    precise vec3 y = fma(vec3(ray.y.x), px, fma(vec3(ray.y.y), py, ray.y.z * pz));
-    precise float u = x.x * y.z - x.z * y.x; // weight of v1
-    precise float v = x.y * y.x - x.x * y.y; // weight of v2
-    precise float w = x.z * y.y - x.y * y.z; // weight of v0
-    if (min(u, min(v, w)) < 0.0 && max(u, max(v, w)) > 0.0)
+    vec3 uvw = edgeFunctions(ray, a, b, c);
+    if (min(uvw.x, min(uvw.y, uvw.z)) < 0.0 && max(uvw.x, max(uvw.y, uvw.z)) > 0.0)
         return false;
-    vec3 normal = cross(a - b, c - a);
-    float along = dot(normal, ray.direction);
-    float t = dot(normal, a) / along;
-    if (!(t > t_min && t < hit.t)) // also refuses NaN: a ray in the triangle's plane
+    precise vec3 normal = cross(a - b, c - a);
+    precise float along = dot(normal, ray.direction);
+    precise float t = dot(normal, a) / along;
+    Place place = Place(t, hitRank(slot));
+    if (!(isBefore(start, place) && isBefore(place, end))) // also refuses NaN: a ray in the triangle's plane
         return false;
-    float sum = u + v + w;
-    vec2 barycentrics = sum == 0.0 ? vec2(0.0) : vec2(u, v) / sum;
+    float sum = uvw.x + uvw.y + uvw.z;
+    vec2 barycentrics = sum == 0.0 ? vec2(0.0) : uvw.xy / sum;
     hit = Hit(t, slot, barycentrics);
+    end = place;
     return true;
+}
+
+bool comesFirst(vec3 p, vec3 q) { return p.x != q.x ? p.x < q.x : p.y != q.y ? p.y < q.y : p.z < q.z; }
+
+/// Of the two triangles that a ray meets where it passes exactly through their common edge, whether slot's is to count: they
+/// go along it in opposite directions.
+bool ownsEdge(uint slot, TriangleRay ray)
+{
+    vec3 v0 = loadBvhTriangle(slot).v0, v1 = loadBvhTriangle(slot).v1, v2 = loadBvhTriangle(slot).v2;
+    vec3 uvw = edgeFunctions(ray, v0 - ray.origin, v1 - ray.origin, v2 - ray.origin);
+    return (uvw.x != 0.0 || comesFirst(v2, v0)) && (uvw.y != 0.0 || comesFirst(v0, v1)) && (uvw.z != 0.0 || comesFirst(v1, v2));
 }
 
 void swapIfFarther(inout float t0, inout uint c0, inout float t1, inout uint c1)
@@ -110,93 +152,60 @@ uint traversal_depth;
 
 void push(uint child, float entry) { traversal_stack[traversal_depth++] = uvec2(child, floatBitsToUint(entry)); }
 
-/// The next child that is entered before t_max, or kNone.
+/// The next child that is entered up to t_max, or kNone.
 uint popNearer(float t_max)
 {
     while (traversal_depth > 0u)
     {
         uvec2 top = traversal_stack[--traversal_depth];
-        if (uintBitsToFloat(top.y) < t_max)
+        if (uintBitsToFloat(top.y) <= t_max)
             return top.x;
     }
     return kNone;
 }
 
-/// The nearest triangle between t_min (exclusive) and t_max, whatever its coverage.
-Hit nearestTriangle(vec3 origin, vec3 direction, float t_min, float t_max)
+/// Down from a child reference to the nearest leaf below it, or where the ray misses all of them to that of the next child.
+/// @return kNone: nothing is left
+uint nearestLeaf(uint current, BoxRay ray, float t_min, float t_max)
 {
-    traversal_depth = 0u;
-    uint current = 0u;
-    Hit hit = Hit(t_max, kNone, vec2(0.0));
-    BoxRay ray = boxRay(origin, direction);
-    TriangleRay triangle_ray = triangleRay(origin, direction);
-    while (true)
+    while ((current & kLeafBit) == 0u)
     {
-        // Down to a leaf; then its triangles: two loops, so that neighbouring rays do the same kind of work together
-        // (Aila & Laine 2009, "Understanding the Efficiency of Ray Traversal on GPUs").
-        while ((current & kLeafBit) == 0u)
-        {
-            vec4 t = hitBoxes(current, ray, hit.t);
-            uvec4 child = nodeChildren(current);
-            swapIfFarther(t.x, child.x, t.y, child.y);
-            swapIfFarther(t.z, child.z, t.w, child.w);
-            swapIfFarther(t.x, child.x, t.z, child.z);
-            swapIfFarther(t.y, child.y, t.w, child.w);
-            swapIfFarther(t.y, child.y, t.z, child.z);
-            if (t.w < kInfinity)
-                push(child.w, t.w);
-            if (t.z < kInfinity)
-                push(child.z, t.z);
-            if (t.y < kInfinity)
-                push(child.y, t.y);
-            current = t.x < kInfinity ? child.x : popNearer(hit.t);
-        }
-        if (current == kNone)
-            return hit;
-        for (uint slot = current & kLeafFirstMask; slot < leafEnd(current); ++slot)
-            hitTriangle(slot, triangle_ray, t_min, hit);
-        current = popNearer(hit.t);
+        vec4 t = hitBoxes(current, ray, t_min, t_max);
+        uvec4 child = nodeChildren(current);
+        swapIfFarther(t.x, child.x, t.y, child.y);
+        swapIfFarther(t.z, child.z, t.w, child.w);
+        swapIfFarther(t.x, child.x, t.z, child.z);
+        swapIfFarther(t.y, child.y, t.w, child.w);
+        swapIfFarther(t.y, child.y, t.z, child.z);
+        if (t.w < kInfinity)
+            push(child.w, t.w);
+        if (t.z < kInfinity)
+            push(child.z, t.z);
+        if (t.y < kInfinity)
+            push(child.y, t.y);
+        current = t.x < kInfinity ? child.x : popNearer(t_max);
     }
+    return current;
 }
 
-/// Whether an opaque triangle lies within t_max. Translucent ones (any kTriangle* flag) let the ray pass;
-/// `met_translucent` says whether there was one, so that the caller knows when nothing is left to look at.
-bool anyOpaqueTriangle(vec3 origin, vec3 direction, float t_max, out bool met_translucent)
+/// The same in no order.
+uint anyLeaf(uint current, BoxRay ray, float t_max)
 {
-    traversal_depth = 0u;
-    uint current = 0u;
-    BoxRay ray = boxRay(origin, direction);
-    TriangleRay triangle_ray = triangleRay(origin, direction);
-    met_translucent = false;
-    while (true)
+    while ((current & kLeafBit) == 0u)
     {
-        while ((current & kLeafBit) == 0u)
-        {
-            vec4 t = hitBoxes(current, ray, t_max);
-            uvec4 child = nodeChildren(current);
-            uint next = kNone;
-            for (uint i = 0u; i < kBvhWidth; ++i)
-                if (t[i] < kInfinity)
-                {
-                    if (next != kNone)
-                        push(next, 0.0);
-                    next = child[i];
-                }
-            current = next != kNone ? next : popNearer(t_max);
-        }
-        if (current == kNone)
-            return false;
-        for (uint slot = current & kLeafFirstMask; slot < leafEnd(current); ++slot)
-        {
-            Hit hit = Hit(t_max, kNone, vec2(0.0));
-            if (!hitTriangle(slot, triangle_ray, 0.0, hit))
-                continue;
-            if (!kSceneHasTranslucency || loadBvhTriangle(slot).flags == 0u)
-                return true;
-            met_translucent = true;
-        }
-        current = popNearer(t_max);
+        vec4 t = hitBoxes(current, ray, 0.0, t_max);
+        uvec4 child = nodeChildren(current);
+        uint next = kNone;
+        for (uint i = 0u; i < kBvhWidth; ++i)
+            if (t[i] < kInfinity)
+            {
+                if (next != kNone)
+                    push(next, 0.0);
+                next = child[i];
+            }
+        current = next != kNone ? next : popNearer(t_max);
     }
+    return current;
 }
 
 #endif

@@ -5,7 +5,7 @@
 
 /// Makes a thread's writes visible to whoever arrives later. Off on CPU devices, whose atomics order memory anyway:
 /// Mesa 22.3's software driver loses threads at a memory barrier in a loop that others have left.
-layout(constant_id = 0) const bool kFences = true;
+layout(constant_id = 2) const bool kFences = true;
 
 void fence()
 {

@@ -11,6 +11,14 @@ CutNode loadCutNode(uint index)
     return CutNode(uintBitsToFloat(a.xyz), uintBitsToFloat(a.w), uintBitsToFloat(b.xyz), b.w);
 }
 
+/// Whether x is within a node's support: half of what is near is not, and costs one texel.
+bool isWithinSupport(uint index, vec3 x)
+{
+    vec4 sphere = uintBitsToFloat(texelFetch(CutNodes, int(2u * index)));
+    vec3 d = x - sphere.xyz;
+    return dot(d, d) < square(sphere.w);
+}
+
 /// The nearest cut node that faces the same way, within sqrt(radius2); kNone where there is none.
 uint nearestCutNode(vec3 x, vec3 n, float radius2)
 {
@@ -20,7 +28,7 @@ uint nearestCutNode(vec3 x, vec3 n, float radius2)
     while (nextRange(x, radius2, first, end))
         for (uint i = first; i < end; ++i)
         {
-            vec3 normal = unpackNormal(loadCutNode(i).normal);
+            vec3 normal = cutNormal(loadCutNode(i));
             float distance2 = surfaceDistance2(loadCutNode(i).center - x, normal);
             if (distance2 < radius2 && dot(n, normal) > 0.2)
             {

@@ -5,6 +5,7 @@
 #include "shaders/lib/cut.glsl"
 #include "shaders/lib/incident.glsl"
 #include "shaders/lib/random.glsl"
+#include "shaders/lib/trace.glsl"
 
 /// The light of the nearest cut node that faces the same way, within sqrt(radius2); none where there is none.
 Incident nearestCutLight(vec3 x, vec3 n, float radius2)
@@ -16,26 +17,52 @@ Incident nearestCutLight(vec3 x, vec3 n, float radius2)
     return Incident(irradiance, unpackNormal(directions[nearest]), irradiance);
 }
 
-/// Light at x: the sum of what the cut nodes around it spread there. None where no photon fell near: what light there is
-/// has gone to the places where photons fell. @param random bits
+/// Whether the node is seen from everywhere on its disc.
+bool isSeenByAll(CutNode node) { return isClear(node) || eyeHeight(node) == 0.0; }
+
+/// Whether nothing stands between the surface at x and the node's eye. Translucent surfaces stop the ray as they stop the probes'.
+bool isSeen(CutNode node, vec3 x, vec3 n, uint random)
+{
+    if (isSeenByAll(node))
+        return true;
+    float height = eyeHeight(node);
+    vec3 origin = offsetOrigin(x, n);
+    vec3 d = node.center + height * cutNormal(node) - origin;
+    float distance = length(d);
+    vec3 direction = d / max(distance, 1e-30);
+    bool met_translucent;
+    if (meetsOpaque(origin, direction, distance, met_translucent))
+        return false;
+    return !kSceneHasTranslucency || !met_translucent || closestHit(origin, direction, kRayStart, distance, random).slot == kNone;
+}
+
+/// Light at x: the sum of what the cut nodes around it spread there, as far as walls let them. One of them is chosen by what it
+/// gives, tells whence light comes, and is asked whether it is seen: on average every node counts as far as it is. It then has the
+/// light of all in its own color: the sum's would be that of nodes behind walls, too. None where no photon fell near: what light
+/// there is has gone to the places where photons fell. @param random bits
 Incident cutLight(vec3 x, vec3 n, uint random)
 {
     vec3 sum = vec3(0.0);
-    Reservoir speaker = Reservoir(random, 0.0, kNone);
+    Reservoir reservoir = Reservoir(random, 0.0, kNone);
+    bool is_sure = true; // all are seen
     uint first, end;
     beginRanges(cut_size.count);
     while (nextRange(x, 0.0, first, end))
         for (uint i = first; i < end; ++i)
         {
+            if (!isWithinSupport(i, x))
+                continue;
             CutNode node = loadCutNode(i);
             vec3 irradiance = cutWeight(node, x, n) * node.irradiance;
             sum += irradiance;
-            offer(speaker, luminance(irradiance), i);
+            is_sure = is_sure && (irradiance == vec3(0.0) || isSeenByAll(node));
+            offer(reservoir, luminance(irradiance), i);
         }
-    if (speaker.chosen == kNone)
-        return Incident(sum, -n, sum);
-    vec3 color = loadCutNode(speaker.chosen).irradiance;
-    return Incident(sum, unpackNormal(directions[speaker.chosen]), color * (speaker.sum / max(luminance(color), 1e-30)));
+    uint chosen = reservoir.chosen;
+    if (chosen == kNone || !isSeen(loadCutNode(chosen), x, n, random))
+        return Incident(vec3(0.0), -n, vec3(0.0));
+    vec3 color = loadCutNode(chosen).irradiance, spoken = color * (reservoir.sum / max(luminance(color), 1e-30));
+    return Incident(is_sure ? sum : spoken, unpackNormal(directions[chosen]), spoken);
 }
 
 #endif

@@ -94,6 +94,20 @@ vec3 beamOrigin(vec3 direction, float aim, bool aimed, uint target, vec2 u, out 
     return origin;
 }
 
+/// The same near the viewer more than elsewhere: density falls with the distance from the view's focus, each way, so that every
+/// cell of a grid over u holds as much of what matters, whatever the size of the scene.
+vec3 focusedOrigin(vec3 direction, vec2 u, out float pdf)
+{
+    mat3 frame = frameAround(direction);
+    vec2 center = ((sceneCenter() - view_scale.focus) * frame).xy / view_scale.distance;
+    float radius = sceneRadius() / view_scale.distance;
+    vec2 low = asinh(center - radius), high = asinh(center + radius), t = mix(low, high, u);
+    vec2 place = sinh(t) * view_scale.distance, stretch = cosh(t) * view_scale.distance * (high - low);
+    pdf = 1.0 / (stretch.x * stretch.y);
+    vec3 origin = view_scale.focus + frame * vec3(place, 0.0);
+    return origin + direction * (dot(sceneCenter() - origin, direction) - sceneRadius());
+}
+
 Emission emitPoint(Light light, float aim, bool aimed, uint target, vec2 u)
 {
     float cos_outer = light.kind == kLightSpot ? -light.p2.y / light.p2.x : -1.0;
@@ -147,7 +161,8 @@ Emission emitTriangle(Light light, float aim, bool aimed, uint target, vec2 u, v
     float pdf = (1.0 - aim) * cosine * kInvPi * (two_sided ? 0.5 : 1.0);
     if (aim > 0.0)
         pdf += aim * aimedDirectionPdf(position, direction);
-    return Emission(offsetOrigin(position, normal), direction, emission * (cosine * area / (light.pmf * pdf)));
+    position += 2.0 * (planeError(light.p0, light.p1, light.p2, vec3(0.0)) + kRounding * maxComponent(abs(position))) * normal;
+    return Emission(position, direction, emission * (cosine * area / (light.pmf * pdf)));
 }
 
 Emission emitEnvironment(Light light, float aim, bool aimed, uint target, vec2 u, uvec2 pick, vec2 v)
@@ -172,6 +187,19 @@ Emission emitFrom(Light light, float aim, bool aimed, uint target, vec2 u, vec2 
     float pdf;
     vec3 origin = beamOrigin(light.p1, aim, aimed, target, u, pdf);
     return Emission(origin, light.p1, light.emission / (light.pmf * pdf));
+}
+
+/// The same of a sun or an environment, from focused origins. @param u place across the beam, @param v of the direction
+Emission emitBeam(Light light, vec2 u, vec2 v, inout Sampler s)
+{
+    LightSample from = LightSample(-light.p1, kInfinity, vec3(0.0), light.emission / light.pmf, 1.0);
+    if (hasFeature(kFeatureEnvironment) && light.kind == kLightEnvironment)
+        from = sampleEnvironment(light.pmf, nextBits(s), v);
+    if (from.pdf == 0.0)
+        return kNoEmission;
+    float pdf;
+    vec3 origin = focusedOrigin(-from.wi, u, pdf);
+    return Emission(origin, -from.wi, from.weight / pdf);
 }
 
 /// One photon of the scene's total power. Uses kEmitDimensions pairs of the sampler at most.

@@ -39,7 +39,7 @@ Link followLink(Ray ray, Hit hit, inout GatherState state, Sampler sampler_, boo
             link.radiance = state.throughput * environmentRadiance(ray.direction);
         return link;
     }
-    Surface s = surfaceAt(hit.slot, hit.barycentrics, ray.direction);
+    Surface s = surfaceAt(ray, hit);
     SurfaceMaterial m = materialAt(s);
     if ((m.flags & kMaterialUnlit) != 0u)
         return link;

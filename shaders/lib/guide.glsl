@@ -4,7 +4,7 @@
 #define LIB_GUIDE_GLSL
 #include "shaders/guide/guide.h"
 
-/// Probability of a cell by the lights' own distributions.
+/// Share of a cell in all power: the probability by which emitFrom() and emitBeam() count.
 float cellShare(uint cell) { return groups.shares[cell / kGuideCells] / float(kGuideCells); }
 
 /// Probability of a cell by what was learned.

@@ -11,7 +11,7 @@ struct LightSample
 {
     vec3 wi;        // unit, from the point to the light
     float distance; // metres
-    vec3 position;  // metres, on the light, moved off its surface; nowhere for directional and environment light
+    vec3 position;  // metres, on the light, off an emissive triangle by what rounding needs; nowhere for directional and environment light
     vec3 weight;    // incident radiance / pdf (area, environment) or irradiance at normal incidence / pmf (punctual)
     float pdf;      // per steradian, selection included; 0 for punctual lights, which no other technique can find
 };
@@ -62,7 +62,7 @@ float environmentPdf(vec3 d)
 /// The same for a point on an emissive triangle seen at `distance` under `cosine`.
 float trianglePdf(uint light, float area, float distance, float cosine)
 {
-    return loadLight(light).pmf * distance * distance / max(area * cosine, 1e-20);
+    return loadLight(light).pmf * distance * distance / max(area * cosine, 1e-36);
 }
 
 LightSample sampleEnvironment(float pmf, uvec2 pick, vec2 u)
@@ -82,7 +82,9 @@ LightSample samplePunctual(Light light, vec3 point)
     if (light.kind == kLightDirectional)
         return LightSample(-light.p1, kInfinity, vec3(0.0), light.emission / light.pmf, 0.0);
     vec3 to_light = light.p0 - point;
-    float distance2 = max(dot(to_light, to_light), 1e-12);
+    float distance2 = dot(to_light, to_light);
+    if (distance2 == 0.0)
+        return kNoLight;
     float distance = sqrt(distance2);
     vec3 wi = to_light / distance;
     vec3 intensity = light.emission;
@@ -112,7 +114,7 @@ LightSample sampleTriangle(Light light, uint index, vec3 point, vec2 u)
     float doubled = length(twice_area);
     vec3 to_light = position - point;
     float distance = length(to_light);
-    vec3 wi = to_light / max(distance, 1e-12);
+    vec3 wi = to_light / max(distance, 1e-36);
     float cosine = -dot(wi, twice_area) / doubled;
     if (light.kind == kLightTriangleTwoSided)
         cosine = abs(cosine);
@@ -121,7 +123,8 @@ LightSample sampleTriangle(Light light, uint index, vec3 point, vec2 u)
     vec3 emission = triangleEmission(light, weights);
     float pdf = trianglePdf(index, 0.5 * doubled, distance, cosine);
     vec3 towards = twice_area * (dot(wi, twice_area) < 0.0 ? 1.0 / doubled : -1.0 / doubled);
-    return LightSample(wi, distance, offsetOrigin(position, towards), emission / pdf, pdf);
+    position += 2.0 * (planeError(light.p0, light.p1, light.p2, abs(point)) + kRounding * distance) * towards;
+    return LightSample(wi, distance, position, emission / pdf, pdf);
 }
 
 const uint kLightPairs = 3u; // of the sampler, that a light sample uses up
@@ -170,7 +173,7 @@ LightSample sampleLight(vec3 point, inout Sampler s)
 /// Multiple importance sampling, power heuristic with exponent 2 (Veach & Guibas 1995).
 float misWeight(float pdf, float other)
 {
-    return pdf * pdf / (pdf * pdf + other * other);
+    return 1.0 / (1.0 + square(other / pdf)); // squares of what is near an emitter are beyond floats
 }
 
 #endif

@@ -31,32 +31,40 @@ uint crossedMedium(uint medium, Surface s, SurfaceMaterial m)
 }
 
 /// A direction and the geometry must agree on which side it leaves: shading normals alone would leak light.
-bool sidesAgree(Surface s, vec3 wi, float local_z)
+bool geometryAgrees(Surface s, vec3 wi, float local_z)
 {
     return dot(s.geometric_normal, wi) * local_z > 0.0;
 }
 
-/// The ray that leaves s along wi.
-Ray leavingRay(Surface s, vec3 wi, float t_max, uint path)
+/// So must they where light is looked for. From a point on the smooth surface above the triangle a ray may also go where the
+/// triangle faces away: whether it gets out there is for the ray to find.
+bool sidesAgree(Surface s, vec3 wi, float local_z)
 {
-    vec3 side = dot(s.geometric_normal, wi) >= 0.0 ? s.geometric_normal : -s.geometric_normal;
-    return Ray(offsetOrigin(s.position, side), t_max, wi, path);
+    return geometryAgrees(s, wi, local_z) || (s.lifted && local_z > 0.0 && dot(s.smooth_normal, wi) > 0.0);
 }
 
-/// A shadow ray stops short of its light by this much of the distance: a punctual light may lie on a surface.
-const float kShadowShortening = 1.0 - 1e-4;
+/// The ray that leaves s along wi: off the surface by more than rounding, to the side from where wi was looked for.
+Ray leavingRay(Surface s, vec3 wi, float t_max, uint path)
+{
+    bool above = dot(s.geometric_normal, wi) >= 0.0 || (s.lifted && dot(s.smooth_normal, wi) > 0.0);
+    float height = -s.back * dot(s.geometric_normal, s.direction);
+    vec3 origin = s.position;
+    if (above)
+        origin += max(0.0, s.error - height) * s.geometric_normal - s.back * s.direction;
+    else
+        origin -= s.error * s.geometric_normal;
+    return Ray(origin, t_max, wi, path);
+}
 
-/// The ray that decides whether s sees the light. It leaves one surface and stops short of the other by as much as
-/// rounding needs, measured from where it really starts: the distance from s itself would carry it into a near light.
+/// The ray that decides whether s sees the light. It ends there: traversal lets pass what the light lies on.
 Ray shadowRay(Surface s, LightSample light, uint path)
 {
     Ray ray = leavingRay(s, light.wi, kInfinity, path);
     if (light.distance >= kInfinity)
         return ray;
     vec3 to_light = light.position - ray.origin;
-    float distance = length(to_light);
-    ray.t_max = distance * kShadowShortening;
-    ray.direction = to_light / max(distance, 1e-20);
+    ray.t_max = length(to_light);
+    ray.direction = ray.t_max > 0.0 ? to_light / ray.t_max : light.wi;
     return ray;
 }
 

@@ -2,6 +2,7 @@
 #ifndef LIB_SCENE_GLSL
 #define LIB_SCENE_GLSL
 #include "format/gpu_scene.h"
+#include "shaders/lib/view_scale.glsl"
 
 // What the scene has, known when the pipeline is built: what it has not costs nothing.
 layout(constant_id = 0) const uint kSceneFeatures = 0xffffffffu; // kFeature*

@@ -6,7 +6,10 @@
 
 Surface surfaceAt(ShadingPoint point)
 {
-    return surfaceAt(point.slot, point.barycentrics, point.direction, point.width);
+    Surface s = surfaceAt(point.slot, point.barycentrics, point.direction, point.width);
+    s.position = point.position;
+    s.back = point.back;
+    return s;
 }
 
 #endif

@@ -3,16 +3,18 @@
 // vertex after E S* that the path leaves through D or G. Thin smooth walls that are passed straight are no vertices.
 #ifndef LIB_TERMS_H
 #define LIB_TERMS_H
-#include "format/gpu_types.h"
+#include "shaders/lib/choice.h"
 
 GPU_NAMESPACE_BEGIN
 
-GPU_CONST uint kTermAll = 0u;
-GPU_CONST uint kTermEmission = 1u; // L S* E
-GPU_CONST uint kTermDirect = 2u;   // L (D or G) S* E
-GPU_CONST uint kTermCaustics = 3u; // L S+ D S* E
-GPU_CONST uint kTermIndirect = 4u; // L (S, G, D)* (D or G) S* D S* E
-GPU_CONST uint kTermGlossy = 5u;   // L ... G S* E that is not direct
+#define GPU_TERMS(X) \
+    X(kTermAll, 0u, "all") \
+    X(kTermEmission, 1u, "emission") /* L S* E */ \
+    X(kTermDirect, 2u, "direct")     /* L (D or G) S* E */ \
+    X(kTermCaustics, 3u, "caustics") /* L S+ D S* E */ \
+    X(kTermIndirect, 4u, "indirect") /* L (S, G, D)* (D or G) S* D S* E */ \
+    X(kTermGlossy, 5u, "glossy")     /* L ... G S* E that is not direct */
+GPU_TERMS(GPU_CHOICE_CONSTANT)
 
 GPU_NAMESPACE_END
 #endif

@@ -7,24 +7,76 @@
 #include "shaders/lib/random.glsl"
 #include "shaders/lib/surface.glsl"
 
-const uint kMaxLayers = 64u; // translucent surfaces along one ray; the next one counts as opaque
+// Texture lookups in the loop over a leaf's triangles would cost every ray registers, and software Vulkan, which runs both
+// sides of every branch, most of its speed. So that loop only notes that a leaf has something to decide, and leaves it to
+// a second one around it, which threads enter together. Neither starts again from the root: rays cross any number of layers.
+// (Software Vulkan ends all loops of a thread after 65535 rounds together: some thousand layers are within that.)
 
-/// The nearest surface between t_min (exclusive) and t_max; one with alpha is there with the probability of its coverage,
-/// decided by `seed`.
-Hit closestHit(vec3 origin, vec3 direction, float t_min, float t_max, uint seed)
+/// Whether the ray meets a surface with alpha: by the probability of its coverage, one decision a triangle, whatever the
+/// order in which it is asked.
+bool meetsAlpha(Hit hit, uint triangle, uint seed)
 {
-    Hit hit;
-    float t = t_min;
-    for (uint layer = 0u; layer < kMaxLayers; ++layer)
+    return toUnitFloat(hash(seed, triangle)) < surfaceCoverage(hit.slot, hit.barycentrics);
+}
+
+/// The nearest of those triangles with alpha that the ray meets, if it is nearer than `hit`.
+/// @param slots of a leaf, a bit each from slot `first` on
+void hitAlphaTriangles(uint first, uint slots, TriangleRay ray, Place start, inout Place end, inout Hit hit, uint seed)
+{
+    for (; slots != 0u; slots &= slots - 1u)
     {
-        hit = nearestTriangle(origin, direction, t, t_max);
-        if (!kSceneHasAlpha || hit.slot == kNone || (loadBvhTriangle(hit.slot).flags & kTriangleAlpha) == 0u)
-            break;
-        if (toUnitFloat(hash(seed, layer)) < surfaceCoverage(hit.slot, hit.barycentrics))
-            break;
-        t = hit.t;
+        uint slot = first + findLSB(slots);
+        Place place = end;
+        Hit candidate = hit;
+        if (!hitTriangle(slot, ray, start, place, candidate) || !meetsAlpha(candidate, loadBvhTriangle(slot).triangle, seed))
+            continue;
+        hit = candidate;
+        end = place;
     }
-    return hit;
+}
+
+/// The nearest surface behind `start` and before t_max; one with alpha is there with the probability of its coverage, decided
+/// by `seed`.
+Hit closestHit(vec3 origin, vec3 direction, Place start, float t_max, uint seed)
+{
+    traversal_depth = 0u;
+    uint current = 0u;
+    Hit hit = Hit(t_max, kNone, vec2(0.0));
+    Place end = Place(t_max, 0u);
+    BoxRay ray = boxRay(origin, direction);
+    TriangleRay triangle_ray = triangleRay(origin, direction);
+    while (true)
+    {
+        // Down to a leaf; then its triangles: two loops, so that neighbouring rays do the same kind of work together
+        // (Aila & Laine 2009, "Understanding the Efficiency of Ray Traversal on GPUs").
+        uint first, undecided = 0u; // slots, a bit each
+        while (undecided == 0u)
+        {
+            current = nearestLeaf(current, ray, start.t, end.t);
+            if (current == kNone)
+                return hit;
+            first = current & kLeafFirstMask;
+            for (uint slot = first; slot < leafEnd(current); ++slot)
+            {
+                Place place = end;
+                Hit candidate = hit;
+                if (!hitTriangle(slot, triangle_ray, start, place, candidate))
+                    continue;
+                if (kSceneHasAlpha && (loadBvhTriangle(slot).flags & kTriangleAlpha) != 0u)
+                {
+                    undecided |= 1u << (slot - first);
+                    continue;
+                }
+                hit = candidate;
+                end = place;
+            }
+            if (undecided == 0u)
+                current = popNearer(end.t);
+        }
+        if (kSceneHasAlpha)
+            hitAlphaTriangles(first, undecided, triangle_ray, start, end, hit, seed);
+        current = popNearer(end.t);
+    }
 }
 
 /// What a thin wall lets straight through where it is; 0 for any other surface.
@@ -45,25 +97,115 @@ vec3 layerTransmittance(Hit hit, vec3 direction)
     return 1.0 - coverage * (1.0 - thinTransmittance(hit, direction));
 }
 
+/// Whether a ray ends in the triangle's plane as far as rounding lets one tell: what a lamp lies on does not shadow it.
+bool endsOn(uint slot, vec3 origin, vec3 direction, float t_max)
+{
+    vec3 v0 = loadBvhTriangle(slot).v0, v1 = loadBvhTriangle(slot).v1, v2 = loadBvhTriangle(slot).v2;
+    vec3 normal = cross(v1 - v0, v2 - v0);
+    float off = dot(normal, v0 - origin) - t_max * dot(normal, direction);
+    return abs(off) <= planeError(v0, v1, v2, abs(origin) + t_max * abs(direction)) * length(normal);
+}
+
+/// Whether slot's triangle is in the way of a ray to t_max.
+bool isBetween(uint slot, TriangleRay ray, float t_max, out Hit hit)
+{
+    Place end = Place(t_max, 0u);
+    return hitTriangle(slot, ray, kRayStart, end, hit) && (hit.t < 0.5 * t_max || !endsOn(slot, ray.origin, ray.direction, t_max));
+}
+
+/// Whether an opaque triangle lies within t_max. Translucent ones (any kTriangle* flag) let the ray pass;
+/// `met_translucent` says whether there was one, so that the caller knows when nothing is left to look at.
+bool meetsOpaque(vec3 origin, vec3 direction, float t_max, out bool met_translucent)
+{
+    traversal_depth = 0u;
+    uint current = 0u;
+    BoxRay ray = boxRay(origin, direction);
+    TriangleRay triangle_ray = triangleRay(origin, direction);
+    met_translucent = false;
+    while (true)
+    {
+        uint first, undecided = 0u; // what the light may lie on
+        while (undecided == 0u)
+        {
+            current = anyLeaf(current, ray, t_max);
+            if (current == kNone)
+                return false;
+            first = current & kLeafFirstMask;
+            for (uint slot = first; slot < leafEnd(current); ++slot)
+            {
+                Place end = Place(t_max, 0u);
+                Hit hit;
+                if (!hitTriangle(slot, triangle_ray, kRayStart, end, hit))
+                    continue;
+                if (kSceneHasTranslucency && loadBvhTriangle(slot).flags != 0u)
+                    met_translucent = true;
+                else if (hit.t < 0.5 * t_max)
+                    return true;
+                else
+                    undecided |= 1u << (slot - first);
+            }
+            if (undecided == 0u)
+                current = popNearer(t_max);
+        }
+        Hit hit;
+        for (; undecided != 0u; undecided &= undecided - 1u)
+            if (isBetween(first + findLSB(undecided), triangle_ray, t_max, hit))
+                return true;
+        current = popNearer(t_max);
+    }
+}
+
+/// What all translucent triangles within t_max let through together: each is stored once, so in any order.
+vec3 translucentTransmittance(vec3 origin, vec3 direction, float t_max)
+{
+    traversal_depth = 0u;
+    uint current = 0u;
+    BoxRay ray = boxRay(origin, direction);
+    TriangleRay triangle_ray = triangleRay(origin, direction);
+    vec3 through = vec3(1.0);
+    while (through != vec3(0.0))
+    {
+        uint first, met = 0u; // slots, a bit each
+        while (met == 0u)
+        {
+            current = anyLeaf(current, ray, t_max);
+            if (current == kNone)
+                return through;
+            first = current & kLeafFirstMask;
+            for (uint slot = first; slot < leafEnd(current); ++slot)
+            {
+                Place end = Place(t_max, 0u);
+                Hit hit;
+                if (loadBvhTriangle(slot).flags != 0u && hitTriangle(slot, triangle_ray, kRayStart, end, hit))
+                    met |= 1u << (slot - first);
+            }
+            if (met == 0u)
+                current = popNearer(t_max);
+        }
+        for (; met != 0u; met &= met - 1u)
+        {
+            uint slot = first + findLSB(met);
+            Hit hit;
+            if (!isBetween(slot, triangle_ray, t_max, hit))
+                continue;
+            vec3 layer = layerTransmittance(hit, direction);
+            if (layer == vec3(0.0) || ownsEdge(slot, triangle_ray)) // two halves of a pane are one pane along their edge
+                through *= layer;
+        }
+        current = popNearer(t_max);
+    }
+    return through;
+}
+
 /// Fraction of light that gets from origin to origin + t_max direction.
 vec3 transmittance(vec3 origin, vec3 direction, float t_max)
 {
     bool met_translucent;
-    if (anyOpaqueTriangle(origin, direction, t_max, met_translucent))
+    if (meetsOpaque(origin, direction, t_max, met_translucent))
         return vec3(0.0);
-    vec3 through = vec3(1.0);
     if (!kSceneHasTranslucency || !met_translucent)
-        return through;
-    float t = 0.0;
-    for (uint layer = 0u; layer < kMaxLayers; ++layer)
-    {
-        Hit hit = nearestTriangle(origin, direction, t, t_max);
-        if (hit.slot == kNone || through == vec3(0.0))
-            return through;
-        through *= layerTransmittance(hit, direction);
-        t = hit.t;
-    }
-    return vec3(0.0);
+        return vec3(1.0);
+    return translucentTransmittance(origin, direction, t_max);
 }
 
 #endif

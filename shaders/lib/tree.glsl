@@ -4,7 +4,7 @@
 #define LIB_TREE_GLSL
 #include "shaders/tree/tree.h"
 
-const uint kTreeStackSize = 64u; // 30 key bits, then ties by index: depth 30 + 32 at most
+const uint kTreeStackSize = 64u; // 32 key bits at most, then ties by index: depth 32 + 32
 
 TreeNode loadTreeNode(uint index)
 {

@@ -31,20 +31,49 @@ struct EmitParams
 };
 GPU_SIZE(EmitParams, 16);
 
+struct PhotonTag // of a photon as it was appended: which one of which path
+{
+    uint path;
+    uint number; // photons of the path before it
+};
+GPU_SIZE(PhotonTag, 8);
+
+struct PhotonStore // what a map holds; made on the GPU
+{
+    uint path_count;   // paths that are in it whole: 0 .. path_count - 1; fewer than were emitted where the store is full
+    uint photon_count; // of those paths
+};
+GPU_SIZE(PhotonStore, 8);
+
 struct TraceParams
 {
     uint path_count;
     uint first_path;
     uint seed;
-    uint event_limit;  // most surfaces met
+    uint capacity;     // photons that there is room for
     uint bounce_limit; // most photons a path may store
-    uint caustic;      // 1: store only the first scattering vertex, and that only after a delta event
+    uint caustic;      // 1: store only what met nothing but delta lobes, and one of them at least
+    uint again;        // 1: only PhotonStore.path_count paths, straight to where they belong
 };
-GPU_SIZE(TraceParams, 24);
+GPU_SIZE(TraceParams, 28);
+
+struct StoreParams
+{
+    uint path_count; // emitted
+    uint capacity;
+};
+GPU_SIZE(StoreParams, 8);
+
+// Russian roulette alone ends a path. Up to kFreeEvents surfaces it survives by what they reflect, at most kMostSurvival of
+// the time, so that even white and mirrors come to an end; from there on every second path ends, and the others carry twice as
+// much: at an albedo of 0.95 a thousandth of the light goes that far.
+GPU_CONST uint kFreeEvents = 128u;
+GPU_CONST float kMostSurvival = 0.98f;
+GPU_CONST float kLateSurvival = 0.5f;
 
 // Pairs of a path's sampler: emission first, then the same number for every surface met.
 GPU_CONST uint kEmitDimensions = 6u;
-GPU_CONST uint kScatterDimensions = 2u;
+GPU_CONST uint kScatterDimensions = 3u;
 
 GPU_NAMESPACE_END
 #endif

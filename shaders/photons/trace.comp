@@ -1,29 +1,35 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
+#include "shaders/lib/emission.glsl"
 #include "shaders/lib/path.glsl"
 #include "shaders/lib/trace.glsl"
 #include "shaders/photons/photons.h"
 
 // Follows photons through the scene: stores one wherever light scatters, then sends it on or absorbs it by Russian roulette.
 // One thread per path, to its end: paths are few against the rays of a frame, and a queue a bounce would cost more than the
-// threads that wait. A path stores its n-th photon in slot n * path_count + path, so that the map does not depend on the
-// order of threads.
+// threads that wait. Photons are appended as they come, with tags by which place.comp makes an order that does not depend on
+// that of threads. Where they were too many for the store, a second dispatch writes those of the paths that fit whole.
 
 layout(local_size_x = kRaysGroupSize) in;
 layout(push_constant, scalar) uniform Params { TraceParams params; };
 
 layout(set = 1, binding = 0, scalar) readonly buffer Starts { PhotonStart starts[]; };
 layout(set = 1, binding = 1, scalar) writeonly buffer Photons { Photon photons[]; };
-layout(set = 1, binding = 2, scalar) writeonly buffer Flags { uint flags[]; };
-layout(set = 1, binding = 3, scalar) buffer Traced { QueueSize traced; }; // rays
+layout(set = 1, binding = 2, scalar) writeonly buffer Tags { PhotonTag tags[]; };
+layout(set = 1, binding = 3, scalar) buffer Appended { uint appended; }; // photons, also those there was no room for
+layout(set = 1, binding = 4, scalar) writeonly buffer Counts { uint counts[]; }; // by path: its photons
+layout(set = 1, binding = 5, scalar) readonly buffer Offsets { uint offsets[]; }; // the rest where params.again: by path
+layout(set = 1, binding = 6, scalar) readonly buffer Store { PhotonStore store; };
+layout(set = 1, binding = 7, scalar) writeonly buffer Slots { uint slots[]; };
+layout(set = 1, binding = 8, scalar) buffer Traced { QueueSize traced; }; // rays
 
 struct PathState // between two vertices
 {
     vec3 power;
     uint medium;   // material index of the absorbing medium it is in, or kNone
     uint specular; // delta events since the light
-    uint stored;   // scattering vertices so far
+    uint stored;   // photons so far
 };
 
 const float kMostGain = 16.0; // at grazing angles few photons would carry much
@@ -37,42 +43,84 @@ float shadingGain(Surface s, vec3 direction)
     return clamp(dot(s.normal, direction) / dot(s.geometric_normal, direction), 0.0, kMostGain);
 }
 
-void store(uint path, PathState state, Surface s, vec3 direction)
+void storePhoton(uint path, inout PathState state, Surface s, vec3 direction)
 {
     bool wanted = params.caustic == 0u || state.specular > 0u;
     if (!wanted || !finite(state.power) || state.power == vec3(0.0))
         return;
-    uint slot = state.stored * params.path_count + path;
+    uint number = state.stored++;
+    uint slot = params.again != 0u ? offsets[path] + number : atomicAdd(appended, 1u);
+    if (slot >= params.capacity)
+        return;
     vec3 power = state.power * shadingGain(s, direction);
     photons[slot] = Photon(s.position, packNormal(direction), power, packNormal(s.geometric_normal));
-    flags[slot] = 1u;
+    if (params.again != 0u)
+        slots[slot] = slot;
+    else
+        tags[slot] = PhotonTag(path, number);
+}
+
+/// Probability that a path goes on after its event number `event`, where `reflected` of its light does.
+float survivalOf(uint event, float reflected)
+{
+    return min(reflected, event < kFreeEvents ? kMostSurvival : kLateSurvival);
+}
+
+/// Photons far from the viewer carry much, and hardly one of them finds its way back: some are aimed at what is in view, with as
+/// little power as their chance of going there, in place of few and bright ones.
+const float kAimedBounces = 0.1, kFarVertex = 8.0, kAimedRadius = 2.0; // the lengths in view distances
+
+/// One sample of the BSDF or of the cone towards the view (one-sample model, balance heuristic; Veach 1997, 9.2.4).
+/// @return whether it was aimed
+bool aimBounce(Surface s, Bsdf b, mat3 frame, vec3 wo, vec2 random, inout BsdfSample next)
+{
+    vec3 to_focus = view_scale.focus - s.position;
+    float distance2 = dot(to_focus, to_focus), radius = kAimedRadius * view_scale.distance;
+    if (distance2 < square(kFarVertex * view_scale.distance))
+        return false;
+    CausticTarget view = CausticTarget(view_scale.focus, radius);
+    float height = coneHeight(view, s.position);
+    vec3 axis = to_focus * inversesqrt(distance2);
+    float pick = random.x / kAimedBounces;
+    bool aimed = pick < 1.0;
+    if (aimed)
+        next.wi = (frameAround(axis) * uniformCone(height, vec2(pick, random.y))) * frame;
+    else if (next.pdf == 0.0) // a delta lobe is found by its own sample alone
+    {
+        next.weight /= 1.0 - kAimedBounces;
+        return false;
+    }
+    BsdfValue f = evaluateBsdf(b, wo, next.wi);
+    bool in_cone = dot(frame * next.wi, axis) >= 1.0 - height;
+    next.pdf = (1.0 - kAimedBounces) * f.pdf + (in_cone ? kAimedBounces / (2.0 * kPi * height) : 0.0);
+    next.weight = next.pdf > 0.0 ? (f.diffuse + f.specular) * abs(next.wi.z) / next.pdf : vec3(0.0);
+    next.passed = false;
+    return aimed;
 }
 
 /// What happens to a photon where its ray ends. @return whether it goes on, by `ray`
 bool scatter(uint path, uint event, Hit hit, inout PathState state, inout Ray ray)
 {
     vec3 direction = ray.direction;
-    Surface s = surfaceAt(hit.slot, hit.barycentrics, direction);
+    Surface s = surfaceAt(ray, hit);
     SurfaceMaterial m = materialAt(s);
     if ((m.flags & kMaterialUnlit) != 0u)
         return false;
     state.power *= mediumTransmittance(crossedMedium(state.medium, s, m), hit.t);
     Bsdf b = bsdfAt(m, s.front);
     if (hasDensity(b))
-    {
-        store(path, state, s, direction);
-        ++state.stored;
-    }
+        storePhoton(path, state, s, direction);
 
     mat3 frame = frameAround(s.normal);
     vec3 wo = -direction * frame;
     Sampler sampler_ = Sampler(params.seed, params.first_path + path, kEmitDimensions + event * kScatterDimensions);
     vec2 u = nextPair(sampler_), choice = nextPair(sampler_);
     BsdfSample next = sampleBsdf(b, wo, choice.x, u);
+    bool aimed = params.caustic == 0u && aimBounce(s, b, frame, wo, nextPair(sampler_), next);
     vec3 wi = frame * next.wi;
     bool delta = next.pdf == 0.0;
     // A caustic path ends where light scatters; a smooth layer over a diffuse base may still reflect it on.
-    if (next.weight == vec3(0.0) || !sidesAgree(s, wi, next.wi.z) || (params.caustic != 0u && !delta) ||
+    if (next.weight == vec3(0.0) || !geometryAgrees(s, wi, next.wi.z) || (params.caustic != 0u && !delta) ||
         state.stored >= params.bounce_limit)
         return false;
     bool entered = next.wi.z < 0.0 && !next.passed;
@@ -82,7 +130,8 @@ bool scatter(uint path, uint event, Hit hit, inout PathState state, inout Ray ra
     // The adjoint of what a path from the eye does there (Veach 1997, 5.3).
     weight *= shadingGain(s, direction) / max(shadingGain(s, wi), 1.0 / kMostGain);
     vec3 scattered = state.power * weight;
-    float survival = min(1.0, luminance(scattered) / max(luminance(state.power), 1e-30));
+    float reflected = luminance(scattered) / max(luminance(state.power), 1e-30);
+    float survival = survivalOf(event, aimed ? 1.0 : reflected); // an aimed photon is to carry little
     if (choice.y >= survival)
         return false;
     state.power = scattered / survival;
@@ -96,17 +145,22 @@ bool scatter(uint path, uint event, Hit hit, inout PathState state, inout Ray ra
 void main()
 {
     uint path = gl_GlobalInvocationID.x;
-    if (path >= params.path_count || starts[path].power == vec3(0.0))
+    bool repeats = params.again != 0u;
+    if (path >= (repeats ? store.path_count : params.path_count))
         return;
     Ray ray = Ray(starts[path].origin, kInfinity, starts[path].direction, path);
     PathState state = PathState(starts[path].power, kNone, 0u, 0u);
+    if (repeats) // fewer paths carry the light of all
+        state.power *= float(params.path_count) / float(store.path_count);
     uint event = 0u;
-    for (bool goes_on = true; goes_on && event < params.event_limit; ++event)
+    for (bool goes_on = state.power != vec3(0.0); goes_on; ++event)
     {
-        Hit hit = closestHit(ray.origin, ray.direction, 0.0, ray.t_max, hash(hash(params.seed, event), params.first_path + path));
+        Hit hit = closestHit(ray.origin, ray.direction, kRayStart, ray.t_max, hash(hash(params.seed, event), params.first_path + path));
         goes_on = hit.slot != kNone;
         if (goes_on)
             goes_on = scatter(path, event, hit, state, ray);
     }
+    if (!repeats)
+        counts[path] = state.stored;
     atomicAdd(traced.count, event);
 }

@@ -24,13 +24,13 @@ layout(set = 1, binding = 7, scalar) writeonly buffer DiffusePoints { DiffusePoi
 /// What a chain's ray that met something does there. `point` and `diffuse` are updated where it is the shading point, and
 /// `point` where the chain goes on: until it is finished its point holds the throughput and width so far and, in `slot`, the
 /// medium that the ray is in. @return radiance that the surface itself sends along the ray
-vec3 meetSurface(Hit hit, uint path, inout ShadingPoint point, inout DiffusePoint diffuse)
+vec3 meetSurface(Ray ray, Hit hit, inout ShadingPoint point, inout DiffusePoint diffuse)
 {
-    vec3 direction = point.direction;
+    vec3 direction = ray.direction;
     uint medium = point.slot;
     point.slot = kNone;
     point.width += params.spread * hit.t;
-    Surface s = surfaceAt(hit.slot, hit.barycentrics, direction, point.width);
+    Surface s = surfaceAt(ray, hit, point.width);
     SurfaceMaterial m = materialAt(s);
     vec3 throughput = point.throughput * mediumTransmittance(crossedMedium(medium, s, m), hit.t);
     if ((m.flags & kMaterialUnlit) != 0u)
@@ -40,17 +40,18 @@ vec3 meetSurface(Hit hit, uint path, inout ShadingPoint point, inout DiffusePoin
     Bsdf b = bsdfAt(m, s.front);
     mat3 frame = frameAround(s.normal);
     vec3 wo = -direction * frame;
-    Sampler sampler_ = vertexSampler(path, params.depth, params.pixel_count, params.first_sample, params.seed);
+    Sampler sampler_ = vertexSampler(ray.path, params.depth, params.pixel_count, params.first_sample, params.seed);
     LobeProbabilities p = lobeProbabilities(b, wo.z);
     float choice = nextPair(sampler_).x;
     if (!b.smooth_specular || choice < p.diffuse)
     {
         throughput /= b.smooth_specular ? p.diffuse : 1.0;
         vec3 reflectance = throughput * diffuseReflectance(b, max(0.0, -dot(s.normal, direction)));
-        point = ShadingPoint(s.position, hit.slot, direction, params.depth, throughput, hit.barycentrics, point.width);
+        point = ShadingPoint(s.position, hit.slot, direction, params.depth, throughput, hit.barycentrics, point.width,
+                             s.back);
         // Irradiance will be that of the smooth normal: even light over its hemisphere gives a bent one this much of it.
         reflectance *= 0.5 + 0.5 * dot(s.normal, s.smooth_normal);
-        diffuse = DiffusePoint(s.position, unitToOctahedral(s.smooth_normal), reflectance);
+        diffuse = DiffusePoint(s.position - min(clearance(s), s.back) * direction, unitToOctahedral(s.smooth_normal), reflectance);
         return light;
     }
     BsdfSample next = sampleBsdf(b, wo, choice, vec2(0.5));
@@ -61,7 +62,7 @@ vec3 meetSurface(Hit hit, uint path, inout ShadingPoint point, inout DiffusePoin
         medium = s.front && enclosesMedium(s, m) ? s.material : kNone;
     point.throughput = throughput * next.weight;
     point.slot = medium;
-    next_rays[atomicAdd(next_queue.count, 1u)] = leavingRay(s, wi, kInfinity, path);
+    next_rays[atomicAdd(next_queue.count, 1u)] = leavingRay(s, wi, kInfinity, ray.path);
     return light;
 }
 
@@ -72,7 +73,7 @@ void main()
         return;
     Ray ray = loadRay(i);
     Hit hit = loadHit(i);
-    ShadingPoint point = ShadingPoint(vec3(0.0), kNone, ray.direction, params.depth, vec3(1.0), vec2(0.0), params.width);
+    ShadingPoint point = ShadingPoint(vec3(0.0), kNone, ray.direction, params.depth, vec3(1.0), vec2(0.0), params.width, 0.0);
     vec3 before = vec3(0.0);
     if (params.depth > 0u)
     {
@@ -84,7 +85,7 @@ void main()
     DiffusePoint diffuse = DiffusePoint(vec3(0.0), vec2(0.0), vec3(0.0));
     vec3 light;
     if (hit.slot != kNone)
-        light = meetSurface(hit, ray.path, point, diffuse);
+        light = meetSurface(ray, hit, point, diffuse);
     else
     {
         light = point.throughput * environmentRadiance(ray.direction);

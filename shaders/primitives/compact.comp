@@ -42,5 +42,5 @@ void main()
         carry += tile_sum;
     }
     if (begin + share >= count && gl_LocalInvocationIndex == 0u)
-        selected = QueueSize(uvec3((carry + kRaysGroupSize - 1u) / kRaysGroupSize, 1u, 1u), carry);
+        selected = queueSize(carry);
 }

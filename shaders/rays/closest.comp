@@ -19,5 +19,5 @@ void main()
     if (i >= queue.count)
         return;
     Ray ray = loadRay(i);
-    hits[i] = closestHit(ray.origin, ray.direction, 0.0, ray.t_max, hash(params.seed, ray.path));
+    hits[i] = closestHit(ray.origin, ray.direction, kRayStart, ray.t_max, hash(params.seed, ray.path));
 }

@@ -3,7 +3,7 @@
 #extension GL_EXT_scalar_block_layout : require
 #include "shaders/rays/rays.h"
 
-// Turns a queue's count into the group count of its indirect dispatches. One thread.
+// Turns a queue's count into the group counts of its indirect dispatches. One thread.
 
 layout(local_size_x = 1) in;
 
@@ -11,5 +11,5 @@ layout(set = 1, binding = 0, scalar) buffer Queue { QueueSize queue; };
 
 void main()
 {
-    queue.groups = uvec3((queue.count + kRaysGroupSize - 1u) / kRaysGroupSize, 1u, 1u);
+    queue = queueSize(queue.count);
 }

@@ -3,6 +3,7 @@
 #ifndef SHADERS_RAYS_H
 #define SHADERS_RAYS_H
 #include "format/gpu_scene.h"
+#include "shaders/lib/queue.h"
 
 GPU_NAMESPACE_BEGIN
 
@@ -31,13 +32,6 @@ struct ShadowRay // carries `radiance` to its path unless something is in the wa
     vec3 radiance; // W/(m^2 sr), all weights included
 };
 GPU_SIZE(ShadowRay, 44);
-
-struct QueueSize // a count made on the GPU, and the dispatch that covers it
-{
-    uvec3 groups; // VkDispatchIndirectCommand
-    uint count;
-};
-GPU_SIZE(QueueSize, 16);
 
 struct QueueParams
 {

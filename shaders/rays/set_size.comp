@@ -12,6 +12,5 @@ layout(set = 1, binding = 0, scalar) writeonly buffer Queue { QueueSize queue; }
 
 void main()
 {
-    queue.groups = uvec3((params.count + kRaysGroupSize - 1u) / kRaysGroupSize, 1u, 1u);
-    queue.count = params.count;
+    queue = queueSize(params.count);
 }

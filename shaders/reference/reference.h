@@ -35,8 +35,9 @@ struct ShadeParams
     uint seed;
     uint stages; // bits 1 << kStage*: light counts that a path finds in one of them
     uint lobes;  // bits kLobe*: of x, through which it counts
+    uint first_stage; // kStage*: of all paths at depth 0
 };
-GPU_SIZE(ShadeParams, 28);
+GPU_SIZE(ShadeParams, 32);
 
 GPU_NAMESPACE_END
 #endif

@@ -25,11 +25,15 @@ layout(set = 1, binding = 7, scalar) buffer ShadowQueue { QueueSize shadow_queue
 layout(set = 1, binding = 8, scalar) writeonly buffer ShadowRays { ShadowRay shadow_rays[]; };
 
 const uint kRouletteDepth = 3u; // vertices that are always continued
+// Of the last vertices that a path may have, where it may have more than as many, every second ends it: of a room that reflects
+// 0.95 of its light a limit would else cut off a part, of 64 vertices a thirtieth.
+const uint kLastVertices = 32u;
+const float kLastSurvival = 0.5;
 
 PathState loadState(uint path)
 {
     if (params.depth == 0u)
-        return PathState(vec3(1.0), vec3(1.0), 0.0, 0.0, kNone, kStageEye);
+        return PathState(vec3(1.0), vec3(1.0), 0.0, 0.0, kNone, params.first_stage);
     return states[path];
 }
 
@@ -107,7 +111,8 @@ void continuePath(Surface s, SurfaceMaterial m, Bsdf b, mat3 frame, vec3 wo, Pat
     {
         // Radiance in a denser medium is smaller for as long as the path stays in it only: that is no reason to end it.
         float squeezed = state.medium == kNone ? 1.0 : square(loadMaterial(state.medium).ior);
-        float survival = clamp(maxComponent(state.throughput) * squeezed, 0.05, 0.95);
+        bool is_late = params.depth_limit > kLastVertices && params.depth + kLastVertices >= params.depth_limit;
+        float survival = clamp(maxComponent(state.throughput) * squeezed, 0.05, is_late ? kLastSurvival : 0.95);
         if (choice.y >= survival)
             return;
         state.throughput /= survival;
@@ -143,7 +148,7 @@ void main()
         return;
     }
 
-    Surface s = surfaceAt(hit.slot, hit.barycentrics, direction);
+    Surface s = surfaceAt(rays[i], hit);
     SurfaceMaterial m = materialAt(s);
     state.throughput *= mediumTransmittance(crossedMedium(state.medium, s, m), hit.t);
     state.travelled += hit.t;

@@ -1,13 +1,16 @@
 // From accumulated radiance to display pixels. Shared by runtime/stages/resolve.cpp and shaders/resolve/*.comp.
 #ifndef SHADERS_RESOLVE_H
 #define SHADERS_RESOLVE_H
+#include "shaders/lib/choice.h"
 #include "shaders/rays/rays.h"
 
 GPU_NAMESPACE_BEGIN
 
-GPU_CONST uint kTonemapSrgb = 0u; // clamp, sRGB transfer
-GPU_CONST uint kTonemapAces = 1u; // ACES-like filmic curve
-GPU_CONST uint kTonemapAgx = 2u;  // AgX-like: desaturates towards white
+#define GPU_TONEMAPS(X) \
+    X(kTonemapSrgb, 0u, "srgb") /* clamp, sRGB transfer */ \
+    X(kTonemapAces, 1u, "aces") /* ACES-like filmic curve */ \
+    X(kTonemapAgx, 2u, "agx")   /* AgX-like: desaturates towards white */
+GPU_TONEMAPS(GPU_CHOICE_CONSTANT)
 
 struct AccumulateParams
 {

@@ -22,6 +22,8 @@ layout(set = 1, binding = 7, scalar) readonly buffer Seeds { uint seeds[]; };   
 layout(set = 1, binding = 8, scalar) readonly buffer Claims { uvec2 claims[]; };   // by point: the nearest kept sample or kNone, bits of eps
 #include "shaders/lib/tree.glsl"
 
+float alpha() { return params.alpha / view_scale.distance; } // of Eq. 2, per metre
+
 uvec2 claimOf(uint point)
 {
     uvec2 claim = claims[point];

@@ -22,5 +22,7 @@ layout(set = 1, binding = 6, scalar) writeonly buffer Owners { uvec2 owners[]; }
 layout(set = 1, binding = 7, scalar) readonly buffer Seeds { uint seeds[]; };     // by cluster: the point it started at, ascending
 #include "shaders/lib/tree.glsl"
 
+float alpha() { return params.alpha / view_scale.distance; } // of Eq. 2, per metre
+
 uvec2 claimOf(uint point) { return uvec2(kNone, 0u); }
 #include "shaders/samples/assign_body.glsl"

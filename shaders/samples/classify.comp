@@ -2,6 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "shaders/lib/math.glsl"
+#include "shaders/lib/scene.glsl"
 #include "shaders/lib/variation.glsl"
 #include "shaders/samples/samples.h"
 
@@ -23,6 +24,8 @@ layout(set = 1, binding = 7, scalar) buffer Sums { ClusterSums sums[]; };       
 layout(set = 1, binding = 8, scalar) buffer Quota { SampleQuota quota; };         // 0 before
 #include "shaders/lib/tree.glsl"
 
+float alpha() { return params.alpha / view_scale.distance; } // of Eq. 2, per metre
+
 void main()
 {
     uint p = gl_GlobalInvocationID.x;
@@ -42,12 +45,12 @@ void main()
         for (uint i = first; i < end; ++i)
         {
             uint old = order[i];
-            float eps = geometricVariation(params.alpha, x, n, old_samples[old].position, unpackNormal(old_samples[old].normal));
+            float eps = geometricVariation(alpha(), x, n, old_samples[old].position, unpackNormal(old_samples[old].normal));
             if (eps < best || (eps == best && old < owner))
             {
                 best = eps;
                 owner = old;
-                radius2 = square(best / params.alpha);
+                radius2 = square(best / alpha());
             }
         }
     if (owner == kNone)

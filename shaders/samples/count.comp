@@ -15,5 +15,5 @@ layout(set = 1, binding = 2, scalar) writeonly buffer Size { QueueSize size; };
 void main()
 {
     uint count = kept_size.count + new_size.count;
-    size = QueueSize(uvec3((count + kRaysGroupSize - 1u) / kRaysGroupSize, 1u, 1u), count);
+    size = queueSize(count);
 }

@@ -3,7 +3,7 @@
 #extension GL_EXT_scalar_block_layout : require
 #include "shaders/lib/math.glsl"
 #include "shaders/lib/random.glsl"
-#include "shaders/lib/scene.glsl"
+#include "shaders/samples/cluster_cube.glsl"
 #include "shaders/samples/samples.h"
 
 // A sample at the shading point that is nearest to its cluster's centre. One thread per sample.
@@ -20,6 +20,8 @@ layout(set = 1, binding = 5, scalar) writeonly buffer Spheres { vec4 spheres[]; 
 layout(set = 1, binding = 6, scalar) writeonly buffer Tenures { SampleTenure tenures[]; };
 layout(set = 1, binding = 7, scalar) readonly buffer KeptSize { QueueSize kept_size; }; // samples before these
 
+layout(set = 1, binding = 8, scalar) readonly buffer Clusters { Cluster clusters[]; };
+
 // A round cluster of radius rho has a mean distance of 2/3 rho; its neighbours lie at 2 rho, the next ones at 3.5 and 4 rho.
 // With a reach of 4, that is 2.7 rho, every place shares about seven samples.
 
@@ -30,13 +32,12 @@ void main()
         return;
     ClusterSums s = sums[occupied[i]];
     SamplePoint point = points[s.nearest];
-    float diagonal = length(scene.bounds_max - scene.bounds_min);
-    vec3 extent = scene.bounds_max - scene.bounds_min;
-    float distance_ = float(s.distance) / (params.fixed_scale * float(s.count)) * maxComponent(extent);
-    float support = clamp(params.reach * distance_, 1e-3 * diagonal, 0.1 * diagonal);
+    vec3 center = clusters[occupied[i]].position;
+    float away = viewDistance(center), distance_ = float(s.distance) / (params.fixed_scale * float(s.count)) * cubeWidth(center);
+    float support = clamp(params.reach * distance_, 1e-3 * away, 0.5 * away);
     uint place = kept_size.count + i;
     samples[place] = Sample(point.position, point.normal, vec3(0.0), support, 0.0, point.pixel);
     spheres[place] = vec4(point.position, support);
-    float greatest_eps = max(uintBitsToFloat(s.greatest_eps), params.alpha * 1e-3 * diagonal); // a single point's is 0
+    float greatest_eps = max(uintBitsToFloat(s.greatest_eps), params.alpha / view_scale.distance * 1e-3 * away); // a single point's is 0
     tenures[place] = SampleTenure(greatest_eps, params.least_frames + hash(params.seed, i) % kSampleFrames);
 }

@@ -38,10 +38,10 @@ GPU_SIZE(Cluster, 16);
 
 struct ClusterSums // fixed-point, so that the sum does not depend on the order of threads
 {
-    uvec3 position; // in the scene's cube, units of 1 / ClusterParams.fixed_scale
+    uvec3 position; // from the cluster's centre, in a cube as wide as it is far from the viewer: units of 1 / ClusterParams.fixed_scale
     uint count;
     uvec3 normal;   // (n + 1) / 2 in the same units
-    uint distance;  // of the points to the centre, in units of 1 / fixed_scale of the scene's longest side
+    uint distance;  // of the points to the centre, in units of 1 / fixed_scale of that width
     uint least_eps; // bits of the least eps of its points
     uint greatest_eps; // bits of their greatest eps to the nearest one
     uint nearest;   // index of the point of least eps
@@ -95,7 +95,7 @@ struct SeedParams
     uint levels;
     uint budget;           // of the root
     uint seed;
-    float alpha;           // of Eq. 2, per metre
+    float alpha;           // of Eq. 2, per view distance
     float variation_scale;
     uint uniform_;         // 1: budget follows the number of points, not their variation
 };
@@ -104,7 +104,7 @@ GPU_SIZE(SeedParams, 28);
 struct ClusterParams
 {
     uint point_count;
-    float alpha;
+    float alpha; // of Eq. 2, per view distance
     float fixed_scale;
     float reach; // support of a sample, in mean distances of its cluster's points to their centre
     uint budget; // of samples
@@ -112,6 +112,9 @@ struct ClusterParams
     uint least_frames; // that a new sample may be kept; kSampleFrames more at most
 };
 GPU_SIZE(ClusterParams, 28);
+
+// No variation counts more in the quadtree's sums, which are fixed-point: positions count for ten times what normals can.
+GPU_CONST float kMostVariation = 20.0f;
 
 GPU_NAMESPACE_END
 #endif

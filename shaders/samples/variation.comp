@@ -2,6 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "shaders/lib/math.glsl"
+#include "shaders/lib/scene.glsl"
 #include "shaders/lib/variation.glsl"
 #include "shaders/samples/quadtree.glsl"
 
@@ -16,6 +17,8 @@ layout(set = 1, binding = 1, scalar) buffer Nodes { QuadNode nodes[]; };
 
 shared uint level_sums[kSamplesGroupSize];
 
+float alpha() { return params.alpha / view_scale.distance; } // of Eq. 2, per metre
+
 uint variationTo(SamplePoint point, uint node)
 {
     if (point.pixel == kNone)
@@ -24,8 +27,8 @@ uint variationTo(SamplePoint point, uint node)
     float resultant = length(n.normal);
     if (resultant < 1e-6) // opposite normals: no node to vary from
         return 0u;
-    float eps = geometricVariation(params.alpha, point.position, unpackNormal(point.normal), n.position / float(n.count), n.normal / resultant);
-    return uint(eps * params.variation_scale);
+    float eps = geometricVariation(alpha(), point.position, unpackNormal(point.normal), n.position / float(n.count), n.normal / resultant);
+    return uint(min(eps, kMostVariation) * params.variation_scale);
 }
 
 void main()

@@ -3,23 +3,26 @@
 #ifndef SHADERS_VIEWS_H
 #define SHADERS_VIEWS_H
 #include "shaders/cut/cut.h"
+#include "shaders/lib/choice.h"
 #include "shaders/resolve/resolve.h"
 #include "shaders/samples/samples.h"
 
 GPU_NAMESPACE_BEGIN
 
-GPU_CONST uint kViewNone = 0u;       // the picture
-GPU_CONST uint kViewNormals = 1u;    // of the shading points: (n + 1) / 2
-GPU_CONST uint kViewPositions = 2u;  // of the shading points in the scene's bounds
-GPU_CONST uint kViewSamples = 3u;    // irradiance samples over the picture
-GPU_CONST uint kViewClusters = 4u;   // a colour for each cluster of k-means, and its sample
-GPU_CONST uint kViewBudget = 5u;     // samples that the quadtree gave a place, against their mean
-GPU_CONST uint kViewPhotons = 6u;    // photons over the picture
-GPU_CONST uint kViewTree = 7u;       // a colour for each node of one level of the photon tree
-GPU_CONST uint kViewCut = 8u;        // a colour for each node of the cut, where it is the nearest
-GPU_CONST uint kViewIrradiance = 9u; // interpolated irradiance / pi: the indirect light of a white surface
-GPU_CONST uint kViewNonFinite = 10u; // pixels that are NaN or infinite
-GPU_CONST uint kViewError = 11u;     // how far the picture is from a reference
+#define GPU_VIEWS(X) \
+    X(kViewNone, 0u, "none")             /* the picture */ \
+    X(kViewNormals, 1u, "normals")       /* of the shading points: (n + 1) / 2 */ \
+    X(kViewPositions, 2u, "positions")   /* of the shading points in the scene's bounds */ \
+    X(kViewSamples, 3u, "samples")       /* irradiance samples over the picture */ \
+    X(kViewClusters, 4u, "clusters")     /* a colour for each cluster of k-means, and its sample */ \
+    X(kViewBudget, 5u, "budget")         /* samples that the quadtree gave a place, against their mean */ \
+    X(kViewPhotons, 6u, "photons")       /* photons over the picture */ \
+    X(kViewTree, 7u, "tree")             /* a colour for each node of one level of the photon tree */ \
+    X(kViewCut, 8u, "cut")               /* a colour for each node of the cut, where it is the nearest */ \
+    X(kViewIrradiance, 9u, "irradiance") /* interpolated irradiance / pi: the indirect light of a white surface */ \
+    X(kViewNonFinite, 10u, "nonfinite")  /* pixels that are NaN or infinite */ \
+    X(kViewError, 11u, "error")          /* how far the picture is from a reference */
+GPU_VIEWS(GPU_CHOICE_CONSTANT)
 
 GPU_CONST uint kViewTreeNodes = 4096u; // nodes of the level that is shown: the one that the cut's threshold comes from
 GPU_CONST uint kViewPhotonShare = 2u;  // one photon of the map for so many pixels is shown at most

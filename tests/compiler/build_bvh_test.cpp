@@ -321,6 +321,20 @@ TEST(BuildBvh, GivesEqualBytesForEqualInput)
     }
 }
 
+/// Long thin triangles every which way: their boxes are nearly empty.
+WorldMesh crossingSticks(uint32_t count)
+{
+    std::mt19937 random(17);
+    std::uniform_real_distribution<float> place(-1, 1);
+    WorldMesh mesh;
+    for (uint32_t i = 0; i < count; ++i)
+    {
+        const gpu::vec3 a{place(random), place(random), place(random)}, b{place(random), place(random), place(random)};
+        addTriangle(mesh, a, b, b + gpu::vec3{0.01f, 0, 0});
+    }
+    return mesh;
+}
+
 TEST(BuildBvh, KeepsTriangleFlags)
 {
     const WorldMesh mesh = randomMesh(50);
@@ -329,6 +343,19 @@ TEST(BuildBvh, KeepsTriangleFlags)
         flags.push_back(i % 4);
     for (const gpu::BvhTriangle& t : buildBvh(mesh, flags).triangles)
         EXPECT_EQ(t.flags, t.triangle % 4);
+}
+
+TEST(BuildBvh, StoresTrianglesWithFlagsOnce)
+{
+    const auto stored = [](uint32_t flag)
+    {
+        const WorldMesh mesh = crossingSticks(2000);
+        std::vector<uint32_t> flags(mesh.triangles.size(), flag);
+        return buildBvh(mesh, flags).triangles.size();
+    };
+    const size_t count = crossingSticks(2000).triangles.size();
+    EXPECT_EQ(stored(gpu::kTriangleAlpha), count);
+    EXPECT_GT(stored(0), count); // or the scene does not ask for splits
 }
 
 TEST(BuildBvh, StatesTheCostThatItsNodesHave)

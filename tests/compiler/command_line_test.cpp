@@ -128,6 +128,14 @@ TEST(CameraViews, AViewLooksFromTheEyeToTheTarget)
     EXPECT_NEAR(view->vertical_fov, 1.5707963, 1e-6);
 }
 
+TEST(CameraViews, MapCoordinatesKeepTheirCentimetres)
+{
+    const Result<CameraView> view = parseView("site=448251.71,35.2,-5411943.33,448251.71,35.2,-5411943.34,40");
+    ASSERT_TRUE(view) << view.error().message;
+    EXPECT_EQ(view->position, (Vec3d{448251.71, 35.2, -5411943.33}));
+    EXPECT_FLOAT_EQ(view->forward.z, -1);
+}
+
 TEST(CameraViews, LookingStraightDownStillHasAnUpVector)
 {
     const Result<CameraView> view = parseView("plan=0,5,0,0,0,0,60");

@@ -155,7 +155,7 @@ TEST(Hierarchy, LightsAndCamerasLookAlongTheirNodesMinusZ)
     ASSERT_EQ(imported->scene.lights.size(), 1u);
     const PunctualLight& light = imported->scene.lights[0];
     EXPECT_EQ(light.kind, gpu::kLightSpot);
-    expectNear(light.position, {1, 2, 3});
+    expectNear(toFloat(light.position), {1, 2, 3});
     expectNear(light.direction, {0, 1, 0});
     expectNear(light.intensity, {3, 1.5f, 0});
     EXPECT_FLOAT_EQ(light.inner_cone, 0.1f);

@@ -131,6 +131,8 @@ TEST(Pipeline, TheReportIsJsonWithTheStatedSchema)
     const nlohmann::json json = nlohmann::json::parse(reportJson(*report, options));
     EXPECT_EQ(json["schema"], "lumicut-compile-report/1");
     EXPECT_EQ(json["triangles"], 2);
+    EXPECT_EQ(json["origin"], nlohmann::json({0, 0, 0}));
+    EXPECT_EQ(json["unit"], 1);
     EXPECT_EQ(json["lights"]["emissive_triangles"], 1);
     EXPECT_EQ(json["texture_pages"].size(), 2u);
     uint64_t stored = 0;
@@ -139,5 +141,6 @@ TEST(Pipeline, TheReportIsJsonWithTheStatedSchema)
     EXPECT_GT(stored, 0u);
     EXPECT_LE(stored, std::filesystem::file_size(options.output));
     EXPECT_NE(summaryText(*report, options).find("triangles  2"), std::string::npos);
+    EXPECT_NE(summaryText(*report, options).find("origin     (0, 0, 0) m, unit 1 m"), std::string::npos);
 }
 } // namespace

@@ -106,6 +106,9 @@ const ContentCase kContentCases[] = {
     {"CameraFov", "chunk META: camera 0 has a field of view of 3.2", [](auto& s) { s.meta.cameras[0]->vertical_fov = 3.2f; }},
     {"CameraBoth", "chunk META: camera 0 has a field of view", [](auto& s) { s.meta.cameras[0]->orthographic_height = 1; }},
     {"BoundsMeta", "chunk META: the scene bounds", [](auto& s) { *s.meta.bounds_max = {-1, 1, 1}; }},
+    {"OriginNan", "chunk META: the origin is not finite", [](auto& s) { s.meta.origin = std::make_unique<lumicut::fb::Vec3d>(0, kNan, 0); }},
+    {"UnitZero", "chunk META: the unit of length is 0 m", [](auto& s) { s.meta.unit = 0; }},
+    {"UnitInfinite", "chunk META: the unit of length is inf m", [](auto& s) { s.meta.unit = std::numeric_limits<double>::infinity(); }},
     {"MaterialNames", "chunk META: 3 material names for 4 materials", [](auto& s) { s.meta.material_names.pop_back(); }},
     {"NoStatistics", "chunk META: its FlatBuffer", [](auto& s) { s.meta.statistics.reset(); }},
 };

@@ -47,6 +47,25 @@ TEST(PackageRoundTrip, EveryChunkComesBackAsWritten)
     EXPECT_TRUE(std::isfinite(walkPackage(*package)));
 }
 
+TEST(PackageRoundTrip, OriginAndUnitComeBackAndAreZeroAndOneMetreWhereAbsent)
+{
+    SamplePackage sample;
+    const std::vector<std::byte> plain = sample.bytes();
+    sample.meta.origin = std::make_unique<lumicut::fb::Vec3d>(2600000.25, 400.0, -1200000.5);
+    sample.meta.unit = 0.25;
+    const std::vector<std::byte> moved = sample.bytes();
+    const auto without = package::Package::openBytes(plain);
+    const auto with = package::Package::openBytes(moved);
+    ASSERT_TRUE(without && with);
+    EXPECT_EQ(without->meta().origin(), nullptr);
+    EXPECT_EQ(without->meta().unit(), 1);
+    ASSERT_NE(with->meta().origin(), nullptr);
+    EXPECT_EQ(with->meta().origin()->x(), 2600000.25);
+    EXPECT_EQ(with->meta().origin()->y(), 400);
+    EXPECT_EQ(with->meta().origin()->z(), -1200000.5);
+    EXPECT_EQ(with->meta().unit(), 0.25);
+}
+
 TEST(PackageRoundTrip, CompressedChunksComeBackAsWritten)
 {
     SamplePackage sample;

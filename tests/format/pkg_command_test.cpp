@@ -70,6 +70,23 @@ TEST_F(PkgCommand, InfoPrintsJson)
     EXPECT_EQ(json["file_bytes"], std::filesystem::file_size(folder.path() / "good.lumi"));
 }
 
+TEST_F(PkgCommand, InfoTellsWhereThePackageLiesInItsSource)
+{
+    SamplePackage sample;
+    sample.meta.origin = std::make_unique<lumicut::fb::Vec3d>(2600000.25, 400.0, -1200000.5);
+    sample.meta.unit = 0.25;
+    ASSERT_TRUE(sample.write(folder.path() / "far.lumi"));
+    ASSERT_EQ(run("info far.lumi --format json"), 0);
+    const nlohmann::json json = nlohmann::json::parse(out);
+    EXPECT_EQ(json["origin"], nlohmann::json({2600000.25, 400.0, -1200000.5}));
+    EXPECT_EQ(json["unit"], 0.25);
+    ASSERT_EQ(run("info far.lumi"), 0);
+    EXPECT_NE(out.find("(2600000.25, 400, -1200000.5) m in the source, unit 0.25 m"), std::string::npos) << out;
+    ASSERT_EQ(run("info good.lumi --format json"), 0);
+    EXPECT_EQ(nlohmann::json::parse(out)["origin"], nlohmann::json({0, 0, 0}));
+    EXPECT_EQ(nlohmann::json::parse(out)["unit"], 1);
+}
+
 TEST_F(PkgCommand, InfoPrintsNoEscapesOfTheFile)
 {
     SamplePackage sample;

@@ -58,6 +58,28 @@ struct Errors
     }
 };
 
+/// Whether shadow rays may take the ray's end for a point of the plane: by twice planeError() of the kernels.
+bool mayEndOn(const gpu::Ray& ray, const gpu::BvhTriangle& triangle, Vec normal)
+{
+    if (ray.t_max > 1e30f)
+        return false;
+    const Vec a = exact(triangle.v0), b = exact(triangle.v1), c = exact(triangle.v2), u = b - a, v = c - a;
+    const Vec origin = exact(ray.origin), direction = exact(ray.direction);
+    const auto product = [](double ui, double uk, double vi, double vk)
+    { return std::abs(ui * vk) + std::abs(uk * vi); };
+    const auto largest = [&](double Vec::*axis)
+    {
+        return std::max({std::abs(a.*axis), std::abs(b.*axis), std::abs(c.*axis)}) + std::abs(origin.*axis) +
+               ray.t_max * std::abs(direction.*axis);
+    };
+    const Vec products{product(u.y, u.z, v.y, v.z), product(u.z, u.x, v.z, v.x), product(u.x, u.y, v.x, v.y)};
+    const Vec reach{largest(&Vec::x), largest(&Vec::y), largest(&Vec::z)};
+    const double error =
+        8 * kUlp * std::min(dot(products, reach) / length(normal), 64 * std::max({reach.x, reach.y, reach.z}));
+    const double off = dot(normal, a - origin) - ray.t_max * dot(normal, direction);
+    return std::abs(off) <= 2 * error * length(normal);
+}
+
 std::optional<Meeting> meet(const gpu::Ray& ray, const gpu::BvhTriangle& triangle, uint32_t slot)
 {
     const Vec origin = exact(ray.origin), direction = exact(ray.direction);
@@ -81,7 +103,8 @@ std::optional<Meeting> meet(const gpu::Ray& ray, const gpu::BvhTriangle& triangl
               .u = 0,
               .v = 0,
               .weight_error = kInfinite,
-              .certain = false};
+              .certain = false,
+              .ends_on_it = mayEndOn(ray, triangle, normal)};
     if (std::abs(along) < 2 * error.denominator || sum < 6 * error.edge_function)
         return m; // nothing is sure of a triangle seen edge-on
     m.t_error = 2 * (error.numerator + std::abs(m.t) * error.denominator) / std::abs(along) + 3 * kUlp * std::abs(m.t);

@@ -15,6 +15,7 @@ struct Meeting
     double u, v;         // weights of v1 and v2
     double weight_error; // bound on the error of u and v
     bool certain;        // inside by more than rounding can undo, between 0 and t_max likewise
+    bool ends_on_it;     // the ray may end in the triangle's plane: shadow rays then may pass
 };
 
 /// Every triangle that the ray may meet by what rounding allows, in no order.

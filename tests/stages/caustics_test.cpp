@@ -45,7 +45,7 @@ protected:
                                  .radiance = radiance,
                                  .point_count = kWidth * kHeight,
                                  .photon_count = wanted,
-                                 .radius = float(kRadius)});
+                                 .radius = float(kRadius / diagonalOf(*scene_))});
                });
         return contents<gpu::vec3>(radiance, kWidth * kHeight);
     }

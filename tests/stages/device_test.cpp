@@ -156,6 +156,12 @@ TEST(ApplySetting, ReachesEveryKnobFromItsLeastToItsMost)
         ASSERT_TRUE(applySetting(settings, fmt::format("tonemap={}", name)));
         EXPECT_EQ(settings.tonemap, value) << name;
     }
+    for (const Knob& knob : knobs())
+        for (const Choice& choice : knob.choices)
+        {
+            ASSERT_TRUE(applySetting(settings, fmt::format("{}={}", knob.name, choice.name)));
+            EXPECT_EQ(settings.*std::get<uint32_t Settings::*>(knob.member), choice.value) << knob.name << "=" << choice.name;
+        }
     for (const auto& [name, value] : {std::pair("all", gpu::kTermAll), std::pair("emission", gpu::kTermEmission),
                                       std::pair("direct", gpu::kTermDirect), std::pair("caustics", gpu::kTermCaustics),
                                       std::pair("indirect", gpu::kTermIndirect), std::pair("glossy", gpu::kTermGlossy)})
@@ -180,7 +186,7 @@ TEST(ApplySetting, NamesTheRangeOfAValueOutsideIt)
     {
         if (!knob.choices.empty())
         {
-            expectSettingRefused(fmt::format("{}=nonsense", knob.name), {std::string(knob.choices)});
+            expectSettingRefused(fmt::format("{}=nonsense", knob.name), {choiceNames(knob, ",")});
             continue;
         }
         const std::string range = fmt::format("{}..{}", knob.least, knob.most);

@@ -142,7 +142,7 @@ TEST_F(ClosedForm, ASunOfOneTexelGivesAllItsLight)
 TEST_F(ClosedForm, EnvironmentSeenDirectlyIsItsTexel)
 {
     SceneBuilder builder;
-    builder.floor(1, -100, builder.material(lambert(0)));
+    builder.floor(1, -10, builder.material(lambert(0)));
     const ImageF map = patternedMap();
     builder.environment(map);
     const auto scene = load(builder.compile());

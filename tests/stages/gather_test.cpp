@@ -35,7 +35,7 @@ protected:
     /// So wide that its light is even over the room, to 1e-6.
     static gpu::CutNode node(gpu::vec3 center, Double3 normal, gpu::vec3 irradiance)
     {
-        return {.center = center, .support = 2000, .irradiance = irradiance, .normal = packedNormal(normal)};
+        return {.center = center, .support = 2000, .irradiance = irradiance, .normal_and_eye = packedCutNormal(normal)};
     }
 
     /// A node on each of the room's walls. @param irradiance by the wall's inward normal

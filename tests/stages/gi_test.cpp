@@ -1,6 +1,65 @@
 #include "tests/stages/gi_test.h"
 
 #include <numbers>
+#include <numeric>
+
+namespace
+{
+struct Grid
+{
+    explicit Grid(const gpu::SceneInfo& info)
+        : focus(0.5 * (Double3(info.bounds_min) + Double3(info.bounds_max))),
+          distance(length(Double3(info.bounds_max) - Double3(info.bounds_min))), low(bent(info.bounds_min))
+    {
+        extent = largest(bent(info.bounds_max) - low);
+    }
+    Double3 bent(Double3 p) const
+    {
+        const Double3 d = (1 / distance) * (p - focus);
+        return {std::asinh(d.x), std::asinh(d.y), std::asinh(d.z)};
+    }
+
+    Double3 focus;
+    double distance;
+    Double3 low;
+    double extent;
+};
+} // namespace
+
+Double3 gridPlace(const gpu::SceneInfo& info, Double3 p)
+{
+    const Grid grid(info);
+    const Double3 place = (1 / grid.extent) * (grid.bent(p) - grid.low);
+    return {std::clamp(place.x, 0.0, 1.0), std::clamp(place.y, 0.0, 1.0), std::clamp(place.z, 0.0, 1.0)};
+}
+
+Double3 fromGridPlace(const gpu::SceneInfo& info, Double3 place)
+{
+    const Grid grid(info);
+    const Double3 b = grid.low + grid.extent * place;
+    return grid.focus + grid.distance * Double3(std::sinh(b.x), std::sinh(b.y), std::sinh(b.z));
+}
+
+Double3 unpackedCutNormal(const gpu::CutNode& node)
+{
+    const auto snorm = [&](uint32_t first)
+    {
+        const int32_t shifted = int32_t(node.normal_and_eye << (32 - gpu::kCutNormalBits - first));
+        return double(shifted >> (32 - gpu::kCutNormalBits)) / ((1 << (gpu::kCutNormalBits - 1)) - 1);
+    };
+    return octahedralToUnit(snorm(0), snorm(gpu::kCutNormalBits));
+}
+
+uint32_t packedCutNormal(Double3 normal)
+{
+    const auto [x, y] = unitToOctahedral(normal);
+    const auto snorm = [](double value)
+    {
+        const double most = (1 << (gpu::kCutNormalBits - 1)) - 1;
+        return uint32_t(int32_t(std::lround(value * most))) & ((1u << gpu::kCutNormalBits) - 1);
+    };
+    return snorm(x) | snorm(y) << gpu::kCutNormalBits;
+}
 
 void GiTest::submit(const SceneGpu& scene, const std::function<void(Recorder&)>& record)
 {
@@ -21,18 +80,28 @@ TreeData GiTest::contents(const Tree& tree, uint32_t count)
 
 Buffer GiTest::sizeBuffer(uint32_t count)
 {
-    return upload<gpu::QueueSize>("test.size", {{.groups = {(count + 63) / 64, 1, 1}, .count = count}});
+    return upload<gpu::QueueSize>("test.size", {gpu::queueSize(count)});
 }
 
 std::unique_ptr<PhotonMap> GiTest::mapOf(const SceneGpu& scene, const std::vector<gpu::Photon>& photons)
 {
     const uint32_t count = uint32_t(photons.size());
     auto map = std::make_unique<PhotonMap>(device(), scene, std::max(count, 1u));
-    const Buffer slots = upload("test.photons", photons), flags = upload("test.flags", std::vector<uint32_t>(count, 1));
+    std::vector<uint32_t> in_order(count);
+    std::iota(in_order.begin(), in_order.end(), 0);
+    const Buffer on_gpu = upload("test.photons", photons), slots = upload("test.slots", in_order), none;
+    const Buffer size = sizeBuffer(count);
     submit(scene,
-           [&](Recorder& rec) {
-               map->gpu.emplace(
-                   map->stage.record(rec, map->rays, {.photons = slots, .flags = flags, .slot_count = count}));
+           [&](Recorder& rec)
+           {
+               map->gpu.emplace(map->stage.record(rec, {.photons = on_gpu,
+                                                        .slots = slots,
+                                                        .size = size,
+                                                        .offsets = none,
+                                                        .counts = none,
+                                                        .store = none,
+                                                        .path_count = count,
+                                                        .capacity = count}));
            });
     EXPECT_EQ(countOf(map->gpu->size), count);
     map->photons = contents<gpu::Photon>(map->gpu->photons, count);
@@ -56,7 +125,7 @@ std::unique_ptr<Cut> GiTest::cutOf(const SceneGpu& scene, const std::vector<gpu:
     for (const uint32_t i : contents<uint32_t>(cut->tree->order(), count))
     {
         cut->sorted.push_back(nodes[i]);
-        directions.push_back(packedNormal(direction ? direction(nodes[i]) : -1 * unpackedNormal(nodes[i].normal)));
+        directions.push_back(packedNormal(direction ? direction(nodes[i]) : -1 * unpackedCutNormal(nodes[i])));
     }
     cut->nodes = device().uploadTexels<gpu::CutNode>("test.cut_nodes", cut->sorted);
     cut->directions = upload("test.cut_directions", directions);
@@ -66,19 +135,18 @@ std::unique_ptr<Cut> GiTest::cutOf(const SceneGpu& scene, const std::vector<gpu:
 
 std::vector<gpu::Photon> GiTest::stored(const PhotonStage::Output& out)
 {
-    const auto slots = contents<gpu::Photon>(out.photons, out.slot_count);
-    const auto flags = contents<uint32_t>(out.flags, out.slot_count);
+    const auto all = contents<gpu::Photon>(out.photons, out.capacity);
     std::vector<gpu::Photon> photons;
-    for (uint32_t i = 0; i < out.slot_count; ++i)
-        if (flags[i] != 0)
-            photons.push_back(slots[i]);
+    for (const uint32_t slot : contents<uint32_t>(out.slots, countOf(out.size)))
+        photons.push_back(all.at(slot));
     return photons;
 }
 
-std::vector<gpu::Photon> GiTest::emit(const SceneGpu& scene, PhotonKind kind, const PhotonStage::Input& in)
+std::vector<gpu::Photon> GiTest::emit(const SceneGpu& scene, PhotonKind kind, const PhotonStage::Input& in,
+                                      std::optional<uint32_t> capacity)
 {
     const RayStage rays(device(), scene);
-    const PhotonStage stage(device(), scene, kind, in.path_count, in.bounce_limit);
+    const PhotonStage stage(device(), scene, kind, in.path_count, capacity.value_or(32 * in.path_count));
     submit(scene, [&](Recorder& rec) { (void)stage.record(rec, rays, in); });
     std::optional<PhotonStage::Output> out;
     submit(scene, [&](Recorder& rec) { out.emplace(stage.record(rec, rays, in)); }); // again: nothing may be left over
@@ -164,7 +232,7 @@ Settings smallSettings()
 {
     Settings settings;
     settings.photon_count = 2000;
-    settings.photon_bounces = 4;
+    settings.photon_capacity = 32000;
     settings.density_photons = 25;
     settings.density_radius = 0.1f; // so few photons lie far apart
     settings.sample_count = 128;

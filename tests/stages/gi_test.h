@@ -9,6 +9,15 @@
 #include <optional>
 #include <span>
 
+/// Where p lies in the grid of lib/morton.glsl, 0 to 1, while no picture was drawn: the view scale is that of the whole scene.
+Double3 gridPlace(const gpu::SceneInfo& info, Double3 p);
+/// Its inverse.
+Double3 fromGridPlace(const gpu::SceneInfo& info, Double3 place);
+
+/// A cut node's normal, and the other way round; packed without an eye, so that its disc is seen from infinitely far.
+Double3 unpackedCutNormal(const gpu::CutNode& node);
+uint32_t packedCutNormal(Double3 normal);
+
 /// A tree as it lies on the GPU.
 struct TreeData
 {
@@ -19,8 +28,8 @@ struct TreeData
 /// A photon map: the stage that made it, and its contents.
 struct PhotonMap
 {
-    PhotonMap(const Device& device, const SceneGpu& scene, uint32_t max_slots)
-        : rays(device, scene), stage(device, "test.map", max_slots)
+    PhotonMap(const Device& device, const SceneGpu& scene, uint32_t max_photons)
+        : rays(device, scene), stage(device, "test.map", max_photons)
     {
     }
 
@@ -81,7 +90,9 @@ protected:
     /// The photons that a stage has stored.
     static std::vector<gpu::Photon> stored(const PhotonStage::Output& out);
     /// The photons that a global or caustic emission stores.
-    static std::vector<gpu::Photon> emit(const SceneGpu& scene, PhotonKind kind, const PhotonStage::Input& in);
+    /// @param capacity of the store, in photons; without it there is room for 32 a path
+    static std::vector<gpu::Photon> emit(const SceneGpu& scene, PhotonKind kind, const PhotonStage::Input& in,
+                                         std::optional<uint32_t> capacity = {});
 
     /// Renders with exactly `settings`, and expects every sample to be finite.
     Picture renderGi(const SceneGpu& scene, const Camera& camera, const Settings& settings, uint32_t frame_count,

@@ -87,7 +87,7 @@ protected:
                 nodes.push_back({.center = {at[0], at[1], at[2]},
                                  .support = 2000,
                                  .irradiance = irradiance(normal),
-                                 .normal = packedNormal(normal)});
+                                 .normal_and_eye = packedCutNormal(normal)});
             }
         return nodes;
     }

@@ -1,6 +1,7 @@
 #include "tests/stages/gpu_test.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 
 namespace
@@ -47,6 +48,8 @@ std::unique_ptr<SceneGpu> GpuTest::load(const std::filesystem::path& path)
     kept_.clear(); // the new scene may come to lie where a former one lay
     const auto package = package::Package::open(path);
     check(bool(package), "{}: {}", path.string(), package ? "" : package.error().message);
+    const auto* const origin = package->meta().origin();
+    origin_ = origin ? gpu::vec3{float(origin->x()), float(origin->y()), float(origin->z())} : gpu::vec3{};
     auto scene = SceneGpu::create(device(), *package);
     check(bool(scene), "{}: {}", path.string(), scene ? "" : scene.error().message);
     return std::move(*scene);
@@ -63,6 +66,16 @@ Renderer& GpuTest::rendererFor(const SceneGpu& scene, Mode mode, uint32_t width,
         }
     kept_.push_back(std::make_unique<Kept>(&scene, mode, Renderer(device(), scene, mode, width, height)));
     return kept_.back()->renderer;
+}
+
+void GpuTest::expectGroups(const gpu::QueueSize& size)
+{
+    for (const auto& [row, group_size] : {std::pair(0, 64.0), std::pair(1, 128.0), std::pair(2, 256.0)})
+    {
+        EXPECT_EQ(size.groups[row].x, uint32_t(std::ceil(size.count / group_size))) << size.count << " in groups of " << group_size;
+        EXPECT_EQ(size.groups[row].y, 1u);
+        EXPECT_EQ(size.groups[row].z, 1u);
+    }
 }
 
 Picture GpuTest::render(const SceneGpu& scene, const Camera& camera, const Settings& settings, uint32_t sample_count,

@@ -23,8 +23,13 @@ protected:
 
     static const Device& device();
 
+    /// Expects the dispatches of every row to cover the count, and no group more.
+    static void expectGroups(const gpu::QueueSize& size);
+
     /// A package's scene on the device. Aborts where there is none: that is the test's mistake.
     std::unique_ptr<SceneGpu> load(const std::filesystem::path& package);
+    /// A place of the source in the package that was loaded last: the compiler moves far scenes to the origin.
+    gpu::vec3 inPackage(gpu::vec3 source) const { return {source.x - origin_.x, source.y - origin_.y, source.z - origin_.z}; }
 
     /// Renders `sample_count` samples a pixel, and expects none of them to be NaN or infinite.
     /// @param scene from load()
@@ -41,4 +46,5 @@ private:
         Renderer renderer;
     };
     std::vector<std::unique_ptr<Kept>> kept_; // of scenes since the last load()
+    gpu::vec3 origin_{};
 };

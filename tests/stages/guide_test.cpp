@@ -37,7 +37,7 @@ protected:
         scene_ = load(builder.compile());
         rays_.emplace(device(), *scene_);
         guide_.emplace(device(), *scene_, kPaths);
-        photons_.emplace(device(), *scene_, PhotonKind::kGlobal, kPaths, kBounces);
+        photons_.emplace(device(), *scene_, PhotonKind::kGlobal, kPaths, kPaths * kBounces);
         submit(*scene_, [&](Recorder& rec) { guide_->reset(rec); });
     }
 
@@ -75,16 +75,32 @@ protected:
                {
                    out.emplace(photons_->record(rec, *rays_,
                                                 {.path_count = kPaths,
-                                                 .bounce_limit = kBounces,
-                                                 .specular_depth = 0,
                                                  .first_path = round * kPaths,
                                                  .seed = 7,
-                                                 .guide = &*guide_}));
-                   guide_->learn(rec, out->photons, out->flags, kPaths, kBounces);
+                                                 .guide = &*guide_,
+                                                 .bounce_limit = kBounces}));
+                   guide_->learn(rec, *out);
                });
         return *out;
     }
     std::vector<gpu::Photon> emit(uint32_t round) { return stored(trace(round)); }
+
+    /// Of each cell, by what was learned.
+    std::vector<double> probabilities() const
+    {
+        const auto distribution = contents<gpu::GuideDistribution>(guide_->distribution(), 1)[0];
+        EXPECT_EQ(distribution.groups[gpu::kGuideGroups - 1], 1);
+        std::vector<double> result;
+        for (uint32_t i = 0; i < gpu::kGuideTotal; ++i)
+        {
+            const uint32_t group = i / gpu::kGuideCells;
+            const double of_group =
+                double(distribution.groups[group]) - (group > 0 ? distribution.groups[group - 1] : 0);
+            result.push_back(of_group * (double(distribution.cells[i]) -
+                                         (i % gpu::kGuideCells > 0 ? distribution.cells[i - 1] : 0)));
+        }
+        return result;
+    }
 
     static bool isFloorOfRoom(const gpu::Photon& p)
     {
@@ -156,36 +172,17 @@ TEST_F(Guides, AreNoHelpWithOneLamp)
 TEST_F(Guides, LearnHowMuchIsWantedOfEachCellsPhotons)
 {
     look();
-    const auto probabilities = [&]
-    {
-        const auto distribution = contents<gpu::GuideDistribution>(guide_->distribution(), 1)[0];
-        EXPECT_EQ(distribution.groups[gpu::kGuideGroups - 1], 1);
-        std::vector<double> result;
-        for (uint32_t i = 0; i < gpu::kGuideTotal; ++i)
-        {
-            const uint32_t group = i / gpu::kGuideCells;
-            const double of_group =
-                double(distribution.groups[group]) - (group > 0 ? distribution.groups[group - 1] : 0);
-            result.push_back(of_group * (double(distribution.cells[i]) -
-                                         (i % gpu::kGuideCells > 0 ? distribution.cells[i - 1] : 0)));
-        }
-        return result;
-    };
     const std::vector<double> start = probabilities();
     const auto wanted = contents<uint32_t>(guide_->wanted(), gpu::kGuidePlaces);
     const PhotonStage::Output out = trace(0);
-    const auto photons = contents<gpu::Photon>(out.photons, out.slot_count);
-    const auto flags = contents<uint32_t>(out.flags, out.slot_count);
-    const gpu::SceneInfo& info = scene_->info();
+    const auto photons = contents<gpu::Photon>(out.photons, out.capacity);
+    const auto slots = contents<uint32_t>(out.slots, countOf(out.size));
+    const auto offsets = contents<uint32_t>(out.offsets, kPaths), counts = contents<uint32_t>(out.counts, kPaths);
     const auto place = [&](const gpu::Photon& photon) // on walls along the axes
     {
-        const auto along = [](float x, float low, float high)
-        { return uint32_t(std::clamp((x - low) / (high - low) * gpu::kGuideVoxels, 0.0f, gpu::kGuideVoxels - 1.0f)); };
-        const gpu::vec3 p = photon.position;
-        const uint32_t voxel = (along(p.z, info.bounds_min.z, info.bounds_max.z) * gpu::kGuideVoxels +
-                                along(p.y, info.bounds_min.y, info.bounds_max.y)) *
-                                   gpu::kGuideVoxels +
-                               along(p.x, info.bounds_min.x, info.bounds_max.x);
+        const Double3 at = gridPlace(scene_->info(), photon.position);
+        const auto along = [](double x) { return uint32_t(std::min(x * gpu::kGuideVoxels, gpu::kGuideVoxels - 1.0)); };
+        const uint32_t voxel = (along(at.z) * gpu::kGuideVoxels + along(at.y)) * gpu::kGuideVoxels + along(at.x);
         const Double3 n = unpackedNormal(photon.normal);
         const uint32_t side = n.x < -0.9 ? 0 : n.x > 0.9 ? 1 : n.y < -0.9 ? 2 : n.y > 0.9 ? 3 : n.z < -0.9 ? 4 : 5;
         return voxel * gpu::kGuideSides + side;
@@ -195,17 +192,36 @@ TEST_F(Guides, LearnHowMuchIsWantedOfEachCellsPhotons)
     double total = 0;
     uint32_t useful = 0;
     for (uint32_t path = 0; path < kPaths; ++path)
-        for (uint32_t n = 0; n < kBounces; ++n)
-            if (const uint32_t slot = n * kPaths + path; flags[slot] != 0)
-            {
-                const double rays = std::min(wanted[place(photons[slot])], gpu::kGuideMostWanted);
-                scores[cells[path]] += rays, total += rays; // nothing was guided yet: all weigh 1
-                useful += rays > 0;
-            }
+        for (uint32_t n = 0; n < counts[path]; ++n)
+        {
+            const double rays = std::min(wanted[place(photons[slots[offsets[path] + n]])], gpu::kGuideMostWanted);
+            scores[cells[path]] += rays, total += rays; // nothing was guided yet: all weigh 1
+            useful += rays > 0;
+        }
     ASSERT_GE(useful, 5) << "too few for a test";
     const std::vector<double> learned = probabilities();
     for (size_t i = 0; i < learned.size(); ++i)
         EXPECT_NEAR(learned[i], gpu::kGuideUnguided * start[i] + (1 - gpu::kGuideUnguided) * scores[i] / total, 1e-6)
             << "cell " << i;
+}
+
+/// As well spread as the sequence that chooses the cells: any interval of its first coordinate gets its part of 2^k points
+/// up to one at either end. (Independent numbers are for the test of pickCell by Pearson's statistic.)
+TEST_F(Guides, LeaveByTheLearnedDistribution)
+{
+    look();
+    (void)trace(0);
+    const std::vector<double> learned = probabilities();
+    constexpr uint32_t kPowerOfTwo = 16384;
+    static_assert(kPowerOfTwo <= kPaths);
+    const Buffer starts = device().array<gpu::PhotonStart>("test.starts", kPowerOfTwo);
+    submit(*scene_,
+           [&](Recorder& rec) { guide_->emit(rec, starts, {.path_count = kPowerOfTwo, .first_path = 0, .seed = 9, .aim = 0}); });
+    std::vector<double> counts(learned.size());
+    for (const uint32_t cell : contents<uint32_t>(guide_->cells(), kPowerOfTwo))
+        ++counts.at(cell);
+    for (size_t i = 0; i < learned.size(); ++i)
+        EXPECT_NEAR(counts[i], learned[i] * kPowerOfTwo, 2) << "cell " << i;
+    EXPECT_GE(std::ranges::max(learned) * kPowerOfTwo, 20) << "too even for a test";
 }
 } // namespace

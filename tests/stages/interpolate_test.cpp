@@ -9,7 +9,7 @@ namespace
 {
 constexpr double kPi = std::numbers::pi;
 constexpr uint32_t kWidth = 48, kHeight = 40;
-constexpr double kAlpha = 0.3, kRadius = 0.5;
+constexpr double kAlpha = 0.3;
 
 class Interpolation : public GiTest
 {
@@ -81,8 +81,7 @@ protected:
                                  .radiance = radiance,
                                  .point_count = kWidth * kHeight,
                                  .width = kWidth,
-                                 .alpha = float(kAlpha),
-                                 .radius = float(kRadius)});
+                                 .alpha = float(kAlpha * diagonalOf(*scene_))});
                });
         return {contents<gpu::vec3>(radiance, kWidth * kHeight),
                 contents<gpu::InterpolateStatistics>(stage.statistics(), 1)[0]};
@@ -159,7 +158,7 @@ TEST_F(Interpolation, WeighsSamplesByDistanceAndNormal)
             continue;
         }
         Double3 sum;
-        double weights = 0, margin = 1, best = kAlpha * kRadius + 2; // of the samples in reach
+        double weights = 0, margin = 1, best = 1e30;
         bool in_reach = false;
         const auto eps = [&](const gpu::Sample& s)
         { return kAlpha * length(p.position - Double3(s.position)) + length(p.normal - unpackedNormal(s.normal)); };
@@ -168,7 +167,7 @@ TEST_F(Interpolation, WeighsSamplesByDistanceAndNormal)
             const double weight = weightOf(s, p.position, p.normal, margin);
             sum = sum + weight * Double3(s.irradiance);
             weights += weight;
-            if (eps(s) < best && length(p.position - Double3(s.position)) < kRadius)
+            if (eps(s) < best)
                 best = eps(s), in_reach = true;
         }
         const bool falls_back = weights == 0;

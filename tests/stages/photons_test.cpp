@@ -2,6 +2,7 @@
 #include "tests/stages/gi_test.h"
 #include "tests/stages/ray_test.h"
 
+#include <cstring>
 #include <numbers>
 
 namespace
@@ -48,12 +49,26 @@ void expectPower(const Power& got, Double3 want, double largest_error, const cha
     }
 }
 
+/// Photons of the last bounce: those of the same paths with one bounce fewer are among them, in the same order.
+std::vector<gpu::Photon> without(std::span<const gpu::Photon> photons, std::span<const gpu::Photon> earlier)
+{
+    std::vector<gpu::Photon> rest;
+    size_t passed = 0;
+    for (const gpu::Photon& photon : photons)
+        if (passed < earlier.size() && length2(Double3(photon.position) - Double3(earlier[passed].position)) == 0)
+            ++passed;
+        else
+            rest.push_back(photon);
+    EXPECT_EQ(passed, earlier.size());
+    return rest;
+}
+
 class Photons : public GiTest
 {
 protected:
     static PhotonStage::Input firstHits(uint32_t seed = 1)
     {
-        return {.path_count = kPaths, .bounce_limit = 1, .specular_depth = 8, .first_path = 0, .seed = seed};
+        return {.path_count = kPaths, .first_path = 0, .seed = seed, .bounce_limit = 1};
     }
 };
 
@@ -195,14 +210,14 @@ TEST_F(Photons, LoseWhatSurfacesAbsorbAtEveryBounce)
     builder.light({{"type", "point"}, {"intensity", 1}}, kAbove);
     const auto scene = load(builder.compile());
     PhotonStage::Input in = firstHits();
-    size_t before = 0; // photons of earlier bounces, which come first
+    std::vector<gpu::Photon> before;
     Double3 expected = 4 * kPi * Double3(1, 1, 1);
     for (in.bounce_limit = 1; in.bounce_limit <= 5; ++in.bounce_limit)
     {
         const auto photons = emit(*scene, PhotonKind::kGlobal, in);
-        expectPower(powerOf(std::span(photons).subspan(before), kAll), expected, 0.1,
+        expectPower(powerOf(without(photons, before), kAll), expected, 0.1,
                     fmt::format("bounce {}", in.bounce_limit).c_str());
-        before = photons.size();
+        before = photons;
         expected = {0.8 * expected.x, 0.5 * expected.y, 0.2 * expected.z};
     }
 }
@@ -228,8 +243,8 @@ TEST_F(Photons, LightShadingNormalsAsTheEyeSeesThem)
     const double irradiance = 100 * 2 * kPi * (1 - std::cos(kInner) + falloff / 3) * cosine; // the beam's mean is straight down
     expectPower(powerOf(arrived, kAll), irradiance * Double3(1, 1, 1), 0.05, "irradiance");
     // Even radiance over the directions above both planes, whose projected solid angle is pi (1 + cosine) / 2.
-    expectPower(powerOf(std::span(photons).subspan(arrived.size()), kAll),
-                kAlbedo * irradiance * (1 + cosine) / 2 * Double3(1, 1, 1), 0.05, "reflected");
+    expectPower(powerOf(without(photons, arrived), kAll), kAlbedo * irradiance * (1 + cosine) / 2 * Double3(1, 1, 1),
+                0.05, "reflected");
 }
 
 TEST_F(Photons, PassGlassWithoutLoss)
@@ -244,7 +259,6 @@ TEST_F(Photons, PassGlassWithoutLoss)
     builder.light({{"type", "point"}, {"intensity", 1}}, {{"translation", {0, 2.2, 0}}});
     const auto scene = load(builder.compile());
     PhotonStage::Input in = firstHits();
-    in.specular_depth = 32;
     const auto photons = emit(*scene, PhotonKind::kGlobal, in);
     const Double3 through =
         powerOf(photons, [](const gpu::Photon& p) { return length2(Double3(p.position) - Double3(0, 0, 0)) < 1; }).sum;
@@ -298,6 +312,73 @@ TEST_F(Photons, ContinueTheSequenceOfTheFrameBefore)
     for (size_t i = 0; i < std::min(other.size(), second.size()); ++i)
         equal += length2(Double3(other[i].position) - Double3(second[i].position)) == 0;
     EXPECT_LT(equal, second.size() / 100);
+}
+
+// ---- A full store --------------------------------------------------------------------------------------------------
+
+TEST_F(Photons, OfAsManyPathsAsFitWholeCarryTheLightOfAll)
+{
+    SceneBuilder builder;
+    addRoom(builder, lambert(0.7));
+    builder.light({{"type", "point"}, {"intensity", 1}}, kAbove);
+    const auto scene = load(builder.compile());
+    const PhotonStage::Input in{.path_count = 4096, .first_path = 0, .seed = 3};
+    constexpr uint32_t kCapacity = 3000;
+    const RayStage rays(device(), *scene);
+    const PhotonStage ample(device(), *scene, PhotonKind::kGlobal, in.path_count, 32 * in.path_count),
+        stage(device(), *scene, PhotonKind::kGlobal, in.path_count, kCapacity);
+    const auto recorded = [&](const PhotonStage& by)
+    {
+        std::optional<PhotonStage::Output> out;
+        submit(*scene, [&](Recorder& rec) { out.emplace(by.record(rec, rays, in)); });
+        return *out;
+    };
+    const auto whole = recorded(ample);
+    const auto all = stored(whole);
+    const auto counts = contents<uint32_t>(whole.counts, in.path_count);
+    EXPECT_EQ(contents<gpu::PhotonStore>(ample.store(), 1)[0].path_count, in.path_count);
+    EXPECT_EQ(contents<gpu::PhotonStore>(ample.store(), 1)[0].photon_count, all.size());
+    uint32_t paths = 0, photons = 0; // that fit
+    while (photons + counts.at(paths) <= kCapacity)
+        photons += counts[paths++];
+    ASSERT_LT(paths, in.path_count);
+
+    const auto kept = stored(recorded(stage));
+    const gpu::PhotonStore store = contents<gpu::PhotonStore>(stage.store(), 1)[0];
+    EXPECT_EQ(store.path_count, paths);
+    EXPECT_EQ(store.photon_count, photons);
+    ASSERT_EQ(kept.size(), photons);
+    const double factor = double(in.path_count) / paths;
+    for (uint32_t i = 0; i < photons; ++i) // the first paths, each from its light on
+    {
+        EXPECT_EQ(length2(Double3(kept[i].position) - Double3(all[i].position)), 0) << i;
+        EXPECT_EQ(kept[i].direction, all[i].direction);
+        EXPECT_NEAR(kept[i].power.x, factor * all[i].power.x, 1e-5 * kept[i].power.x);
+    }
+    // The power of a map is the sum over independent paths.
+    const auto sums = [&](const std::vector<gpu::Photon>& of, uint32_t path_count) -> std::pair<double, double>
+    {
+        double sum = 0, squares = 0;
+        for (uint32_t path = 0, i = 0; path < path_count; ++path)
+        {
+            double power = 0;
+            for (uint32_t end = i + counts[path]; i < end; ++i)
+                power += of[i].power.x;
+            sum += power;
+            squares += power * power;
+        }
+        return {sum, std::sqrt(squares - sum * sum / path_count)};
+    };
+    const auto [want, want_error] = sums(all, in.path_count);
+    const auto [got, got_error] = sums(kept, paths);
+    fmt::print("  {} of {} paths: {:.5g} W of {:.5g} W, standard error {:.2g} W\n", paths, in.path_count, got, want,
+               got_error);
+    EXPECT_LE(std::abs(got - want), 4 * std::hypot(got_error, want_error));
+    EXPECT_LE(got_error, 0.1 * want) << "too few paths to tell";
+
+    const auto again = stored(recorded(stage));
+    ASSERT_EQ(again.size(), kept.size());
+    EXPECT_EQ(std::memcmp(again.data(), kept.data(), kept.size() * sizeof(gpu::Photon)), 0);
 }
 
 // ---- Caustic photons -----------------------------------------------------------------------------------------------

@@ -31,7 +31,7 @@ protected:
         const Kernel kernel = device().kernel("primary/generate");
         const Buffer rays = device().array<gpu::Ray>("test.rays", count);
         Recorder rec(device());
-        rec.begin(VK_NULL_HANDLE);
+        rec.begin();
         rec.run(kernel, count, params, {{"Rays", rays}});
         rec.submitAndWait();
         return device().download<gpu::Ray>(rays, count);

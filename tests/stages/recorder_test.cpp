@@ -1,11 +1,16 @@
 // The recorder's barriers, by chains of dispatches whose results are exact only in the order given, under
 // synchronization validation; and what it says to callers who bind the wrong things.
 #include "runtime/stages/rays.h"
+#include "shaders/gather/harmonics.h"
 #include "shaders/resolve/resolve.h"
 #include "shaders/samples/samples.h"
 #include "tests/stages/gpu_test.h"
+#include "tests/stages/triangle_scene.h"
 
+#include <cstring>
 #include <functional>
+#include <numeric>
+#include <utility>
 
 namespace
 {
@@ -37,7 +42,7 @@ protected:
     static void submit(const std::function<void(Recorder&)>& record)
     {
         Recorder rec(device());
-        rec.begin(VK_NULL_HANDLE);
+        rec.begin();
         record(rec);
         rec.submitAndWait();
     }
@@ -103,7 +108,7 @@ TEST_F(RecorderTest, OrdersIndirectDispatchesAfterTheirCountAndTheNextCountAfter
     {
         rec.run(set_size_, 1, gpu::QueueParams{.count = count}, {{"Queue", size}});
         rec.run(dispatch_size_, 1, NoParams{}, {{"Queue", size}});
-        rec.runIndirect(accumulate_, size, 0, gpu::AccumulateParams{.pixel_count = count, .sample_count = 1},
+        rec.runIndirect(accumulate_, size, gpu::AccumulateParams{.pixel_count = count, .sample_count = 1},
                         {{"Radiance", one}, {"Sum", sum}, {"Compensation", compensation_}, {"NonFinite", non_finite_}});
     };
     constexpr uint32_t kSteps = 40;
@@ -126,16 +131,133 @@ TEST_F(RecorderTest, OrdersIndirectDispatchesAfterTheirCountAndTheNextCountAfter
     EXPECT_EQ(wrong, 0u);
 }
 
+/// How many of kCount elements a kernel reaches that is dispatched by a QueueSize in which only `row` has groups.
+class IndirectGroups : public RecorderTest
+{
+protected:
+    static constexpr uint32_t kCount = 5000; // no multiple of any group size
+
+    static gpu::QueueSize onlyRow(uint32_t row, uint32_t fewer_groups)
+    {
+        gpu::QueueSize size = gpu::queueSize(kCount);
+        for (uint32_t r = 0; r < gpu::kQueueRows; ++r)
+            size.groups[r].x = r == row ? size.groups[r].x - fewer_groups : 0;
+        return size;
+    }
+
+    /// A kernel of 64 threads a group.
+    uint32_t reachedBy64(const gpu::QueueSize& made) const
+    {
+        const Buffer size = device().upload<gpu::QueueSize>("test.size", std::span(&made, 1)), one = filled(1), sum = zeros();
+        submit(
+            [&](Recorder& rec)
+            {
+                rec.runIndirect(accumulate_, size, gpu::AccumulateParams{.pixel_count = kCount, .sample_count = 1},
+                                {{"Radiance", one}, {"Sum", sum}, {"Compensation", compensation_}, {"NonFinite", non_finite_}});
+            });
+        return uint32_t(std::ranges::count(device().download<gpu::vec3>(sum, kElements), 1.0f, &gpu::vec3::x));
+    }
+
+    /// A kernel of 256.
+    uint32_t reachedBy256(const gpu::QueueSize& made) const
+    {
+        const Kernel carry = device().kernel("gather/carry");
+        EXPECT_EQ(carry.code().group_size, 256u);
+        std::vector<uint32_t> kept(kCount);
+        std::iota(kept.begin(), kept.end(), 0u);
+        const Buffer size = device().upload<gpu::QueueSize>("test.size", std::span(&made, 1)), order = device().upload<uint32_t>("test.kept", kept),
+                     from = device().array<gpu::SampleHarmonics>("test.from", kCount), to = device().array<gpu::SampleHarmonics>("test.to", kCount);
+        submit(
+            [&](Recorder& rec)
+            {
+                rec.fill(from, 1);
+                rec.clear(to);
+                rec.runIndirect(carry, size, NoParams{}, {{"KeptSize", size}, {"Kept", order}, {"OldHarmonics", from}, {"Harmonics", to}});
+            });
+        gpu::SampleHarmonics none;
+        std::memset(&none, 0, sizeof(none));
+        uint32_t reached = 0;
+        for (const gpu::SampleHarmonics& carried : device().download<gpu::SampleHarmonics>(to, kCount))
+            reached += std::memcmp(&carried, &none, sizeof(none)) != 0;
+        return reached;
+    }
+};
+
+TEST_F(IndirectGroups, AreThoseOfTheKernelsOwnSize)
+{
+    EXPECT_EQ(accumulate_.code().group_size, 64u);
+    EXPECT_EQ(reachedBy64(onlyRow(0, 0)), kCount);
+    EXPECT_EQ(reachedBy64(onlyRow(0, 1)), kCount / 64 * 64); // the last group is needed
+    EXPECT_EQ(reachedBy64(onlyRow(2, 0)), 0u);               // others are not looked at
+    EXPECT_EQ(reachedBy256(onlyRow(2, 0)), kCount);
+    EXPECT_EQ(reachedBy256(onlyRow(2, 1)), kCount / 256 * 256);
+    EXPECT_EQ(reachedBy256(onlyRow(0, 0)), 0u);
+}
+
+TEST_F(IndirectGroups, CoverTheCountAndNoMore)
+{
+    for (const uint32_t count : {0u, 1u, 63u, 64u, 65u, 127u, 128u, 129u, 255u, 256u, 257u, (1u << 26) - 1})
+        expectGroups(gpu::queueSize(count));
+}
+
+TEST_F(RecorderTest, OrdersReadsOfTheSceneAsOfAnyOtherBuffer)
+{
+    const LoadedScene scene = []
+    {
+        TriangleScene s;
+        s.triangle({0, 0, 0}, {4, 0, 0}, {0, 4, 1}); // z = y / 4
+        return s.load(device());
+    }();
+    const SceneSet set = scene.gpu->descriptorSet();
+    const Buffer &triangles = *set.buffers[gpu::kBvhTrianglesBinding], &lights = *set.buffers[gpu::kLightsBinding];
+    const auto before = device().download<gpu::BvhTriangle>(triangles, 1);
+    auto after = before;
+    for (gpu::vec3* vertex : {&after[0].v0, &after[0].v1, &after[0].v2})
+        vertex->z = 0.25f; // within the tree's boxes
+    const std::vector<gpu::Ray> ray(1, {.origin = {0.5f, 2, 5}, .t_max = 10, .direction = {0, 0, -1}, .path = 0});
+    const RayStage stage(device(), *scene.gpu);
+    RayQueue queue(device(), "test.queue", 1);
+    queue.rays = device().uploadTexels<gpu::Ray>("test.rays", ray);
+    std::vector<Buffer> hits;
+    for (int i = 0; i < 5; ++i)
+        hits.push_back(device().array<gpu::Hit>("test.hits", 1));
+
+    Recorder rec(device());
+    rec.begin(set);
+    uint32_t barriers = rec.barrierCount();
+    const auto more = [&] { return rec.barrierCount() - std::exchange(barriers, rec.barrierCount()); };
+    stage.resize(rec, queue.size, 1);
+    stage.closest(rec, queue, hits[0], 0);
+    EXPECT_EQ(more(), 1u); // for the queue's size
+    stage.closest(rec, queue, hits[1], 0);
+    EXPECT_EQ(more(), 0u); // two that read
+    rec.write(triangles, 0, std::as_bytes(std::span(after)));
+    EXPECT_EQ(more(), 1u);
+    stage.closest(rec, queue, hits[2], 0);
+    EXPECT_EQ(more(), 1u);
+    rec.write(lights, 0, std::as_bytes(std::span(after)).first(4));
+    stage.closest(rec, queue, hits[3], 0);
+    EXPECT_EQ(more(), 0u); // rays do not read lights
+    rec.run(accumulate_, 0, gpu::AccumulateParams{.pixel_count = 0, .sample_count = 1}, // a kernel's output
+            {{"Radiance", compensation_}, {"Sum", triangles}, {"Compensation", compensation_}, {"NonFinite", non_finite_}});
+    EXPECT_EQ(more(), 1u);
+    stage.closest(rec, queue, hits[4], 0);
+    EXPECT_EQ(more(), 1u);
+    rec.submitAndWait();
+    for (const auto& [hit, t] : {std::pair(0, 4.5f), {1, 4.5f}, {2, 4.75f}, {3, 4.75f}, {4, 4.75f}})
+        EXPECT_FLOAT_EQ(device().download<gpu::Hit>(hits[hit], 1)[0].t, t) << "hit " << hit;
+}
+
 TEST_F(RecorderTest, OrdersOneSubmissionAfterTheOther)
 {
     const Buffer a = zeros(), b = filled(1);
     Recorder first(device()), second(device());
     for (int i = 0; i < 5; ++i)
     {
-        first.begin(VK_NULL_HANDLE);
+        first.begin();
         add(first, b, a);
         first.submit(VK_NULL_HANDLE, VK_NULL_HANDLE);
-        second.begin(VK_NULL_HANDLE);
+        second.begin();
         add(second, a, b);
         second.submit(VK_NULL_HANDLE, VK_NULL_HANDLE);
         first.wait();
@@ -161,7 +283,7 @@ TEST_F(RecorderTest, TimesScopesOfOneNameTogether)
 {
     const Buffer one = filled(1), sum = zeros();
     Recorder rec(device());
-    rec.begin(VK_NULL_HANDLE);
+    rec.begin();
     {
         const auto whole = rec.scope("whole");
         for (int i = 0; i < 3; ++i)
@@ -188,7 +310,7 @@ void runTonemap(const Device& device, const Params& params, std::initializer_lis
 {
     const Kernel tonemap = device.kernel("resolve/tonemap");
     Recorder rec(device);
-    rec.begin(VK_NULL_HANDLE);
+    rec.begin();
     rec.run(tonemap, 1, params, bindings);
 }
 
@@ -216,7 +338,7 @@ TEST_F(RecorderDeathTest, NamesABufferThatIsReadAsTexelsWithoutAView)
     EXPECT_DEATH(
         {
             Recorder rec(device());
-            rec.begin(VK_NULL_HANDLE);
+            rec.begin();
             rec.run(kernel, 1, gpu::PointParams{}, {{"DiffusePoints", words}, {"Points", points}});
         },
         "samples/points: 'DiffusePoints' is read as texels, but buffer 'test.words' has no texel view");
@@ -232,13 +354,44 @@ TEST_F(RecorderDeathTest, RefusesParametersOfAnotherSize)
                  "resolve/tonemap: 0 bytes of parameters given, the kernel has 16");
 }
 
+TEST_F(RecorderDeathTest, RefusesIndirectDispatchesWithoutGroupsOfTheKernelsSize)
+{
+    GTEST_FLAG_SET(death_test_style, "threadsafe");
+    const Buffer size = device().array<gpu::QueueSize>("test.size", 1), word = device().array<uint32_t>("test.word", 1);
+    const auto run = [&](const Buffer& given)
+    { submit([&](Recorder& rec) { rec.runIndirect(set_size_, given, gpu::QueueParams{.count = 1}, {{"Queue", size}}); }); };
+    EXPECT_DEATH(run(size), "rays/set_size: a QueueSize has no dispatch for groups of 1 threads");
+    EXPECT_DEATH(run(word), "rays/set_size: buffer 'test.word' of 4 bytes is no QueueSize");
+}
+
+TEST_F(RecorderDeathTest, RefusesConstantsThatNoKernelUses)
+{
+    GTEST_FLAG_SET(death_test_style, "threadsafe");
+    const std::array scene{Constant{"kSceneFeatures", 0}}, nonsense{Constant{"kNonsense", 0}};
+    EXPECT_EQ(device().kernel("resolve/tonemap", SharedConstants(scene)).pipeline(), device().kernel("resolve/tonemap").pipeline());
+    EXPECT_NE(device().kernel("primitives/sum", {{"kFlags", 1}}).pipeline(), device().kernel("primitives/sum", {{"kFlags", 0}}).pipeline());
+    EXPECT_DEATH((void)device().kernel("resolve/tonemap", {{"kSceneFeatures", 0}}),
+                 "resolve/tonemap: it uses no specialization constant 'kSceneFeatures'");
+    EXPECT_DEATH((void)device().kernel("resolve/tonemap", SharedConstants(nonsense)), "no kernel uses a specialization constant 'kNonsense'");
+    EXPECT_DEATH((void)device().kernel("primitives/sum", {{"kFlags", 1}, {"kFlags", 0}}), "primitives/sum: a specialization constant is given twice");
+}
+
+TEST_F(RecorderDeathTest, RefusesKernelsThatReadASceneWhereNoneIsGiven)
+{
+    GTEST_FLAG_SET(death_test_style, "threadsafe");
+    const Buffer word = device().array<gpu::QueueSize>("test.word", 1), radiance = zeros();
+    EXPECT_DEATH(submit([&](Recorder& rec)
+                        { rec.run(device().kernel("rays/visible"), 1, NoParams{}, {{"Queue", word}, {"ShadowRays", word}, {"Radiance", radiance}}); }),
+                 "rays/visible: it reads binding . of the scene, of 0 given to begin");
+}
+
 TEST_F(RecorderDeathTest, RefusesScopesLeftOpenAndKernelsThatAreNotThere)
 {
     GTEST_FLAG_SET(death_test_style, "threadsafe");
     EXPECT_DEATH(
         {
             Recorder rec(device());
-            rec.begin(VK_NULL_HANDLE);
+            rec.begin();
             const auto scope = rec.scope("left open");
             rec.submitAndWait();
         },

@@ -1,5 +1,6 @@
 // The frame as a whole: equal input gives equal bits, how samples are batched does not show, and what measurements need.
 #include "tests/stages/gpu_test.h"
+#include "tests/stages/same_picture.h"
 #include "tests/stages/scene_builder.h"
 
 #include <cmath>
@@ -98,7 +99,7 @@ class Batches : public GpuTest
 {
 protected:
     /// Sums of `sample_count` samples a pixel by the reference stage, `batch` at a time.
-    static std::vector<gpu::vec3> sums(const SceneGpu& scene, uint32_t sample_count, uint32_t batch)
+    static std::vector<gpu::vec3> sums(const SceneGpu& scene, uint32_t sample_count, uint32_t batch, uint32_t seed = 0)
     {
         constexpr uint32_t kPixels = kWidth * kHeight;
         const RayStage rays(device(), scene);
@@ -106,6 +107,7 @@ protected:
         ResolveStage resolve(device(), kPixels);
         gpu::CameraParams view = cameraParams(kCamera, kWidth, kHeight);
         view.sample_count = batch;
+        view.seed = seed;
         Recorder rec(device());
         for (view.first_sample = 0; view.first_sample < sample_count; view.first_sample += batch)
         {
@@ -133,22 +135,18 @@ TEST_F(Batches, OfAnySizeAgreeStatisticallyWithTranslucency)
     // Blended surfaces are met by other random numbers in another batch: sums differ, but by noise alone.
     SceneBuilder builder;
     const auto scene = load(room(builder, true));
-    const auto one_by_one = sums(*scene, 48, 1);
-    for (const uint32_t batch : {4u, 16u})
+    constexpr uint32_t kSamples = 8, kSeeds = 6;
+    const auto pictures = [&](uint32_t batch, uint32_t first_seed)
     {
-        const auto batched = sums(*scene, 48, batch);
-        EXPECT_FALSE(equalBits(one_by_one, batched));
-        double mean = 0, square_mean = 0;
-        const double count = double(batched.size());
-        for (size_t i = 0; i < batched.size(); ++i)
-        {
-            const double difference = double(batched[i].x) - one_by_one[i].x;
-            mean += difference / count;
-            square_mean += difference * difference / count;
-        }
-        constexpr double kSigmas = 4.5;
-        EXPECT_LE(std::abs(mean), kSigmas * std::sqrt((square_mean - mean * mean) / count)) << batch;
-    }
+        std::vector<ImageF> images;
+        for (uint32_t seed = first_seed; seed < first_seed + kSeeds; ++seed)
+            images.push_back(imageOf(kWidth, kHeight, sums(*scene, kSamples, batch, seed)));
+        return images;
+    };
+    const auto one_by_one = pictures(1, 0);
+    EXPECT_FALSE(equalBits(sums(*scene, kSamples, 1), sums(*scene, kSamples, 4)));
+    for (const uint32_t batch : {4u, 8u})
+        expectSamePicture(fmt::format("batches of {}", batch), pictures(batch, batch * kSeeds), one_by_one, 0.02);
 }
 
 class Measured : public GpuTest

@@ -18,7 +18,7 @@ protected:
     static void submit(const std::function<void(Recorder&)>& record)
     {
         Recorder rec(device());
-        rec.begin(VK_NULL_HANDLE);
+        rec.begin();
         record(rec);
         rec.submitAndWait();
     }

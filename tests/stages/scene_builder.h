@@ -31,7 +31,8 @@ public:
     void floor(float side, float height, int material);
     /// An axis-parallel box, faces outwards or inwards.
     void box(gpu::vec3 low, gpu::vec3 high, int material, bool inwards = false);
-    /// A sphere of 2 n^2 quads (as triangles); `smooth`: with the true sphere's normals, else one normal a facet.
+    /// A sphere of 2 n^2 quads (as triangles); `smooth`: with the true sphere's normals, else one normal a facet. A negative
+    /// radius turns its front inwards.
     void sphere(gpu::vec3 center, float radius, int n, bool smooth, int material);
 
     /// A light of KHR_lights_punctual on a node with these properties, below a node with those of `parent`.

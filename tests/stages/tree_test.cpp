@@ -10,17 +10,21 @@ namespace
 {
 constexpr uint32_t kCells = 1024; // a side of the grid of Morton codes
 
+constexpr gpu::SceneInfo kCube{.bounds_min = {-1, -1, -1}, .bounds_max = {1, 1, 1}};
+
 /// A sphere in the middle of a cell of the scene's cube [-1, 1]^3, or a little off it: rounding has no say in its code.
 gpu::vec4 inCell(gpu::uvec3 cell, float radius = 0, float off = 0)
 {
-    const auto at = [&](uint32_t c) { return (float(c) + 0.5f + off) * (2.0f / kCells) - 1; };
-    return {at(cell.x), at(cell.y), at(cell.z), radius};
+    const auto at = [&](uint32_t c) { return (c + 0.5 + off) / kCells; };
+    const Double3 p = fromGridPlace(kCube, {at(cell.x), at(cell.y), at(cell.z)});
+    return {float(p.x), float(p.y), float(p.z), radius};
 }
 
 uint32_t mortonCode(gpu::vec4 sphere)
 {
-    const auto cell = [](float p) { return uint32_t(std::clamp((double(p) + 1) / 2 * kCells, 0.0, kCells - 1.0)); };
-    const uint32_t cells[3]{cell(sphere.x), cell(sphere.y), cell(sphere.z)};
+    const Double3 place = gridPlace(kCube, {sphere.x, sphere.y, sphere.z});
+    const auto cell = [](double p) { return uint32_t(std::min(p * kCells, kCells - 1.0)); };
+    const uint32_t cells[3]{cell(place.x), cell(place.y), cell(place.z)};
     uint32_t code = 0;
     for (int bit = 9; bit >= 0; --bit)
         for (const uint32_t c : cells)

@@ -93,7 +93,7 @@ protected:
 
     void place(SamplesMode mode, uint32_t budget)
     {
-        samples_stage_.emplace(device(), *scene_, kWidth, kHeight, budget);
+        samples_stage_.emplace(device(), kWidth, kHeight, budget);
         const RayStage rays(device(), *scene_);
         submit(*scene_,
                [&](Recorder& rec)
@@ -103,7 +103,7 @@ protected:
                                                  .mode = mode,
                                                  .budget = budget,
                                                  .iterations = 3,
-                                                 .alpha = 0.3f,
+                                                 .alpha = float(0.3 * diagonalOf(*scene_)),
                                                  .seed = 1});
                });
         samples_ = samples_stage_->download(device());
@@ -321,7 +321,7 @@ TEST_F(Views, ShowTheNearestNodeOfTheCut)
             nodes.push_back({.center = {float(p.position.x), float(p.position.y), float(p.position.z)},
                              .support = random.between(0.05f, 0.5f),
                              .irradiance = {1, 1, 1},
-                             .normal = packedNormal(p.normal)});
+                             .normal_and_eye = packedCutNormal(p.normal)});
     }
     const auto cut = cutOf(*scene_, nodes);
     const Colors colors = viewed(gpu::kViewCut, [&](Recorder& rec, const ViewsStage::Input& in)
@@ -336,7 +336,7 @@ TEST_F(Views, ShowTheNearestNodeOfTheCut)
         uint32_t nearest = 0;
         for (uint32_t i = 0; i < cut->sorted.size(); ++i)
         {
-            const Double3 n = unpackedNormal(cut->sorted[i].normal),
+            const Double3 n = unpackedCutNormal(cut->sorted[i]),
                           d = Double3(cut->sorted[i].center) - points_->points[pixel].position;
             const double distance2 = dot(n, {0, 1, 0}) > 0.2 ? dot(d, d) + 15 * std::pow(dot(d, n), 2) : 1e30;
             if (distance2 < best)

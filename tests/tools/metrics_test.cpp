@@ -35,6 +35,7 @@ TEST(Metrics, TwoPixelsByHand)
     EXPECT_DOUBLE_EQ(metrics.mean_ratio[1], 1);
     EXPECT_DOUBLE_EQ(metrics.mean_ratio[2], 2);
     EXPECT_DOUBLE_EQ(metrics.rmse, 1);
+    EXPECT_DOUBLE_EQ(metrics.mean_difference, 4.0 / 11);
     const double first = (1 / 1.01 + 4 / 0.01) / 3;
     const double second = (1 / 1.01) / 3;
     EXPECT_NEAR(metrics.relmse, (first + second) / 2, 1e-12 * first);

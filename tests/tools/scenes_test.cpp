@@ -1,13 +1,15 @@
-// The demo scenes: what the generator promises, read back from the bytes it writes.
+// The scenes: what the generator promises, read back from the bytes it writes.
 #include "tests/tools/run_program.h"
 #include "tools/scenes/scenes.h"
 
 #include <gtest/gtest.h>
 #include <stb_image.h>
 
+#include <algorithm>
 #include <array>
 #include <cstring>
 #include <map>
+#include <set>
 
 namespace
 {
@@ -86,25 +88,115 @@ std::vector<Part> parts(const Glb& glb)
     return result;
 }
 
+using Double3 = std::array<double, 3>;
+
+Double3 cross(const Double3& a, const Double3& b)
+{
+    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+double dot(const Double3& a, const Double3& b)
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/// Triangles and cameras as the nodes place them: in doubles, scale and shift of parents, no turned parents.
+struct Placed
+{
+    std::vector<std::array<Double3, 3>> triangles;
+    std::vector<std::pair<Double3, Double3>> cameras; // eye, direction of view
+    Double3 low{1e30, 1e30, 1e30}, high{-1e30, -1e30, -1e30};
+
+    explicit Placed(const Glb& glb)
+    {
+        for (const json& index : glb.content["scenes"][0]["nodes"])
+            add(glb, glb.content["nodes"][index.get<size_t>()], {}, 1);
+    }
+
+    void add(const Glb& glb, const json& node, const Double3& parent_shift, double parent_scale)
+    {
+        const Double3 shift = node.value("translation", Double3{});
+        const std::array<double, 4> turn = node.value("rotation", std::array<double, 4>{0, 0, 0, 1});
+        const double scale = parent_scale * (node.contains("scale") ? node["scale"][0].get<double>() : 1);
+        const auto turned = [&](const Double3& v)
+        {
+            const Double3 axis{turn[0], turn[1], turn[2]}, once = cross(axis, v), twice = cross(axis, once);
+            Double3 result;
+            for (size_t i = 0; i < 3; ++i)
+                result[i] = v[i] + 2 * (turn[3] * once[i] + twice[i]);
+            return result;
+        };
+        Double3 origin;
+        for (size_t i = 0; i < 3; ++i)
+            origin[i] = parent_shift[i] + parent_scale * shift[i];
+        if (node.contains("camera"))
+            cameras.emplace_back(origin, turned({0, 0, -1}));
+        for (const json& child : node.value("children", json::array()))
+            add(glb, glb.content["nodes"][child.get<size_t>()], origin, scale);
+        if (!node.contains("mesh"))
+            return;
+        const json& primitive = glb.content["meshes"][node["mesh"].get<size_t>()]["primitives"][0];
+        const auto positions = glb.accessor<Vec3>(primitive["attributes"]["POSITION"]);
+        const auto indices = glb.accessor<uint32_t>(primitive["indices"]);
+        for (size_t i = 0; i < indices.size(); ++i)
+        {
+            const Vec3 local = positions[indices[i]];
+            const Double3 v = turned({local.x, local.y, local.z});
+            if (i % 3 == 0)
+                triangles.emplace_back();
+            for (size_t k = 0; k < 3; ++k)
+            {
+                const double value = origin[k] + scale * v[k];
+                triangles.back()[i % 3][k] = value;
+                low[k] = std::min(low[k], value);
+                high[k] = std::max(high[k], value);
+            }
+        }
+    }
+
+    bool isHit(const Double3& eye, const Double3& direction) const
+    {
+        const auto minus = [](const Double3& a, const Double3& b) {
+            return Double3{a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+        };
+        return std::ranges::any_of(triangles, [&](const std::array<Double3, 3>& t) { // Moeller and Trumbore
+            const Double3 e1 = minus(t[1], t[0]), e2 = minus(t[2], t[0]), o = minus(eye, t[0]);
+            const Double3 p = cross(direction, e2), q = cross(o, e1);
+            const double d = dot(e1, p), u = dot(o, p) / d, v = dot(direction, q) / d;
+            return u >= 0 && v >= 0 && u + v <= 1 && dot(e2, q) / d > 0;
+        });
+    }
+};
+
 struct SceneCase
 {
     const char* name;
-    GltfWriter (*build)();
     uint64_t least_triangles, most_triangles;
     size_t texture_count;
     std::vector<std::string> cameras;
+    bool indoors = true;          // cameras are within the bounds of the geometry
+    bool against_winding = false; // normals
 };
+
+GltfWriter build(std::string_view name)
+{
+    for (const Scene& scene : allScenes())
+        if (scene.name == name)
+            return scene.build();
+    ADD_FAILURE() << "no scene " << name;
+    return GltfWriter();
+}
 
 class Scenes : public testing::TestWithParam<SceneCase>
 {
 protected:
-    const std::vector<uint8_t> bytes_ = GetParam().build().glb();
+    const std::vector<uint8_t> bytes_ = build(GetParam().name).glb();
     const Glb glb_{bytes_};
 };
 
 TEST_P(Scenes, SameBytesEveryTime)
 {
-    EXPECT_EQ(GetParam().build().glb(), bytes_);
+    EXPECT_EQ(build(GetParam().name).glb(), bytes_);
 }
 
 TEST_P(Scenes, SaysWhereItComesFromAndNamesItsCameras)
@@ -128,7 +220,7 @@ TEST_P(Scenes, TriangleCountIsInRangeAndAsReported)
         const json& primitive = glb_.content["meshes"][node["mesh"].get<size_t>()]["primitives"][0];
         count += glb_.content["accessors"][primitive["indices"].get<size_t>()]["count"].get<uint64_t>() / 3;
     }
-    EXPECT_EQ(count, GetParam().build().triangleCount());
+    EXPECT_EQ(count, build(GetParam().name).triangleCount());
     EXPECT_GE(count, GetParam().least_triangles);
     EXPECT_LE(count, GetParam().most_triangles);
 }
@@ -162,7 +254,7 @@ TEST_P(Scenes, WindingAgreesWithNormalsAndNoTriangleIsDegenerate)
             const Vec3 face = cross(part.positions[b] - p, part.positions[c] - p);
             ASSERT_GT(length(face), 1e-10f) << part.name << " triangle " << i / 3;
             const Vec3 shading = part.normals[a] + part.normals[b] + part.normals[c];
-            ASSERT_GT(dot(normalize(face), normalize(shading)), 0.3f)
+            ASSERT_GT(dot(normalize(face), normalize(shading)) * (GetParam().against_winding ? -1.0f : 1.0f), 0.3f)
                 << part.name << " triangle " << i / 3 << " at " << p.x << " " << p.y << " " << p.z;
         }
     }
@@ -220,12 +312,87 @@ TEST_P(Scenes, StaysUnderEightMegabytes)
     EXPECT_LT(bytes_.size(), 8u << 20);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Scenes,
-                         testing::Values(SceneCase{"cornell", cornellScene, 30, 100, 0, {"front"}},
-                                         SceneCase{"caustics", causticsScene, 30000, 100000, 0, {"table"}},
-                                         SceneCase{
-                                             "atrium", atriumScene, 50000, 100000, 13, {"hall", "gallery", "glass"}}),
+TEST_P(Scenes, CamerasSeeSomethingFromWhereTheyShouldBe)
+{
+    const Placed placed(glb_);
+    ASSERT_FALSE(placed.cameras.empty());
+    for (const auto& [eye, forward] : placed.cameras)
+    {
+        EXPECT_TRUE(placed.isHit(eye, forward));
+        if (GetParam().indoors)
+            for (int axis = 0; axis < 3; ++axis)
+            {
+                EXPECT_GT(eye[axis], placed.low[axis]) << axis;
+                EXPECT_LT(eye[axis], placed.high[axis]) << axis;
+            }
+    }
+}
+
+TEST_P(Scenes, Compiles)
+{
+    const TemporaryFolder folder;
+    std::ofstream(folder / "scene.glb", std::ios::binary)
+        .write(reinterpret_cast<const char*>(bytes_.data()), std::streamsize(bytes_.size()));
+    const ProgramRun run =
+        runProgram(LUMICUT_COMPILE, (folder / "scene.glb").string() + " -q -o " + (folder / "scene.lumi").string());
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+}
+
+const SceneCase kCases[] = {
+    {"cornell", 30, 100, 0, {"front"}, false},
+    {"caustics", 30000, 100000, 0, {"table"}},
+    {"atrium", 50000, 100000, 13, {"hall", "gallery", "glass"}},
+    {"sheets", 30, 30, 0, {"inside"}},
+    {"small", 30, 30, 0, {"inside"}},
+    {"large", 30, 30, 0, {"inside"}},
+    {"slot", 30, 30, 0, {"inside"}},
+    {"bright80", 14, 14, 0, {"inside"}},
+    {"bright90", 14, 14, 0, {"inside"}},
+    {"bright95", 14, 14, 0, {"inside"}},
+    {"neighbours", 26, 26, 0, {"dim"}},
+    {"neighbours_alone", 24, 24, 0, {"dim"}},
+    {"plain0", 56, 56, 0, {"inside"}},
+    {"plain1", 58, 58, 0, {"inside"}},
+    {"plain10", 58, 58, 0, {"inside"}},
+    {"far", 900, 1100, 0, {"court"}},
+    {"far_local", 900, 1100, 0, {"court"}},
+    {"decal", 8, 8, 1, {"front"}, false},
+    {"decal_none", 6, 6, 1, {"front"}, false},
+    {"terminator", 1500, 2500, 0, {"front"}, false},
+    {"terminator_fine", 27000, 28000, 0, {"front"}, false},
+    {"flipped", 3900, 4100, 0, {"corner"}, false, true},
+    {"flipped_agreed", 3900, 4100, 0, {"corner"}, false},
+    {"shield", 16, 16, 0, {"floor"}, false},
+    {"shield_unlit", 16, 16, 0, {"floor"}, false},
+};
+INSTANTIATE_TEST_SUITE_P(All, Scenes, testing::ValuesIn(kCases),
                          [](const auto& test) { return std::string(test.param.name); });
+
+TEST(SceneList, EachOfTheListIsTestedAndNamedOnce)
+{
+    std::vector<std::string> listed, tested;
+    for (const Scene& scene : allScenes())
+        listed.push_back(scene.name);
+    for (const SceneCase& scene : kCases)
+        tested.push_back(scene.name);
+    EXPECT_EQ(listed, tested);
+    EXPECT_EQ(std::set(listed.begin(), listed.end()).size(), listed.size());
+}
+
+TEST(SceneList, MapCoordinatesKeepTheirLastDigit)
+{
+    const std::vector<double> expected = {691607.4, 518.3, -5334758.9}; // no float is within a centimetre of the last
+    EXPECT_EQ(Glb(build("far").glb()).content["nodes"].back()["translation"].get<std::vector<double>>(), expected);
+}
+
+TEST(SceneList, TwinsDifferInTheirLightOrPlaceAlone)
+{
+    const auto meshes = [](std::string_view name) { return Glb(build(name).glb()).content["meshes"]; };
+    EXPECT_EQ(meshes("far"), meshes("far_local"));
+    EXPECT_EQ(meshes("small"), meshes("sheets"));
+    EXPECT_EQ(meshes("large"), meshes("sheets"));
+    EXPECT_EQ(meshes("shield"), meshes("shield_unlit"));
+}
 
 /// Signed volume by the divergence theorem: right only where the mesh is closed and wound outwards.
 double volume(const Mesh& mesh)

@@ -1,14 +1,17 @@
-// The illumination cut against the photon map that it stands for: what a gather ray's lookup costs and how far it is off.
+// The illumination cut against the photon map that it stands for, and against the truth: what a gather ray's lookup costs
+// and how far it is off.
 #pragma once
 #include "runtime/settings.h"
 #include "tools/bench/opened.h"
 
 struct LookupBenchOptions : BenchOptions
 {
-    uint32_t repeats = 8; // frames of each mode, the first of which is not timed
+    uint32_t repeats = 8;       // frames of each mode
+    uint32_t truth_rays = 4096; // of the path tracer, from each sample; 0: none
     Settings settings;
 };
 
-/// Prints, for each cut.mode, nanoseconds a lookup and the error of the samples' irradiance against full kNN. Samples and
-/// gather rays are the same in all of them.
+/// Prints, for each cut.mode, the cut's nodes, nanoseconds a lookup, and error and ratio of the samples' irradiance against
+/// full kNN and against path tracing from the same samples. Samples are the same in all frames and modes, photons and gather
+/// rays in all modes.
 Status benchLookup(const LookupBenchOptions& options);

@@ -73,10 +73,13 @@ void addPackageCommands(CLI::App& app, CommandLine& line)
     converge->add_option("--output", line.converge.output, "write the last picture (.exr)");
     converge->add_flag("--stages", line.converge.stages, "print the stages' median times too");
 
-    CLI::App* lookup = addPackageCommand(app, "lookup", "the illumination cut's lookups against full kNN: time and error", line.lookup);
+    CLI::App* lookup = addPackageCommand(app, "lookup", "the illumination cut's lookups against full kNN and path tracing: time and error", line.lookup);
     addSize(lookup, line);
     addSettings(lookup, line);
     lookup->add_option("--repeats", line.lookup.repeats, "frames of each cut.mode")->check(CLI::Range(1, 1000))->capture_default_str();
+    lookup->add_option("--truth-rays", line.lookup.truth_rays, "paths traced from each sample for its true irradiance; 0: none")
+        ->check(CLI::Range(0, 1 << 20))
+        ->capture_default_str();
 }
 
 void addPrimitives(CLI::App& app, PrimitiveBenchOptions& options)

@@ -34,7 +34,7 @@ Row measure(const Device& device, uint32_t count, Workers workers, uint32_t repe
     std::ranges::generate(random, engine);
     std::vector<uint32_t> coin(count); // flags
     std::ranges::transform(random.begin(), random.begin() + count, coin.begin(), [](uint32_t r) { return r & 1; });
-    const gpu::QueueSize all{.groups = {0, 0, 0}, .count = count};
+    const gpu::QueueSize all{.count = count, .groups = {}};
     const Buffer size = device.upload<gpu::QueueSize>("bench.size", std::span(&all, 1));
     const Buffer source = device.upload<uint32_t>("bench.source", random),
                  flags = device.upload<uint32_t>("bench.flags", coin);
@@ -58,7 +58,7 @@ Row measure(const Device& device, uint32_t count, Workers workers, uint32_t repe
     for (uint32_t repeat = 0; repeat < kWarmUp + repeats; ++repeat)
     {
         Recorder rec(device);
-        rec.begin(VK_NULL_HANDLE);
+        rec.begin();
         const auto timed = [&](size_t kind, auto&& record)
         {
             rec.copy(source, keys, uint64_t(count) * 2 * sizeof(uint32_t));

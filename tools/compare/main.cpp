@@ -2,7 +2,8 @@
 #include "tools/compare/flip.h"
 #include "tools/compare/metrics.h"
 #include "tools/compare/picture.h"
-#include "tools/image/read_exr.h"
+#include "tools/compare/read_images.h"
+#include "tools/compare/welch_command.h"
 #include "tools/image/write_image.h"
 
 #include <CLI/CLI.hpp>
@@ -22,6 +23,7 @@ struct Options
     bool tsv = false;
     bool flip_panel = false;
     std::vector<uint32_t> crop; // X0,Y0,X1,Y1 or empty
+    WelchOptions welch;
 };
 
 struct Report
@@ -31,30 +33,6 @@ struct Report
     FlipExposures exposures;
     FlipMap hdr, ldr;
 };
-
-int fail(const std::string& file, const Error& error)
-{
-    fmt::print(stderr, "{}: error: {}\n", file, error.message);
-    return int(error.code);
-}
-
-Result<ImageF> cropped(const ImageF& image, const std::vector<uint32_t>& crop)
-{
-    if (crop.empty())
-        return image;
-    if (crop[0] >= crop[2] || crop[1] >= crop[3] || crop[2] > image.width || crop[3] > image.height)
-        return Error{ExitCode::kUsage,
-                     fmt::format("--crop {},{},{},{} does not lie in the image of {} x {} pixels; give "
-                                 "the left, top, right and bottom edge, the last two exclusive.",
-                                 crop[0], crop[1], crop[2], crop[3], image.width, image.height)};
-    ImageF part{crop[2] - crop[0], crop[3] - crop[1], {}};
-    for (uint32_t y = crop[1]; y < crop[3]; ++y)
-    {
-        const auto row = image.rgb.begin() + std::ptrdiff_t(3 * (size_t(y) * image.width + crop[0]));
-        part.rgb.insert(part.rgb.end(), row, row + std::ptrdiff_t(3 * size_t(part.width)));
-    }
-    return part;
-}
 
 ImageF scaled(const ImageF& image, float factor)
 {
@@ -77,6 +55,7 @@ std::string jsonText(const Report& report)
     json["rmse"] = m.rmse;
     json["relmse"] = m.relmse;
     json["relmse_trimmed"] = m.relmse_trimmed;
+    json["mean_difference"] = m.mean_difference;
     json["bias_z"] = m.bias_z;
     json["hdr_flip"] = report.hdr.mean;
     json["hdr_flip_exposures"] = {
@@ -89,8 +68,9 @@ std::string jsonText(const Report& report)
 std::string tsvText(const Report& report)
 {
     const Metrics& m = report.metrics;
-    return fmt::format("{:.6f}\t{:.6f}\t{:.6f}\t{:.6g}\t{:.6g}\t{:.6f}\t{:.6f}\t{}\n", m.mean_ratio[0], m.mean_ratio[1], m.mean_ratio[2],
-                       m.relmse, m.relmse_trimmed, report.ldr.mean, report.hdr.mean, m.test_nonfinite);
+    return fmt::format("{:.6f}\t{:.6f}\t{:.6f}\t{:.6g}\t{:.6g}\t{:.6f}\t{:.6f}\t{}\t{:.6g}\t{:.6g}\n", m.mean_ratio[0], m.mean_ratio[1],
+                       m.mean_ratio[2], m.relmse, m.relmse_trimmed, report.ldr.mean, report.hdr.mean, m.test_nonfinite, m.bias_z,
+                       m.mean_difference);
 }
 
 std::string plainText(const Report& report)
@@ -103,13 +83,14 @@ std::string plainText(const Report& report)
                        "mean reference  {}\n"
                        "mean test       {}\n"
                        "mean ratio      {}\n"
+                       "mean difference {:.6g}\n"
                        "bias z          {:.2f}\n"
                        "RMSE            {:.6g}\n"
                        "relMSE          {:.6g} (trimmed of the worst 0.1 %: {:.6g})\n"
                        "HDR-FLIP        {:.6f} ({} exposures, {:.4f} to {:.4f})\n"
                        "LDR-FLIP        {:.6f}\n",
                        report.width, report.height, m.reference_nonfinite, m.test_nonfinite, rgb(m.reference_mean),
-                       rgb(m.test_mean), rgb(m.mean_ratio), m.bias_z, m.rmse, m.relmse, m.relmse_trimmed,
+                       rgb(m.test_mean), rgb(m.mean_ratio), m.mean_difference, m.bias_z, m.rmse, m.relmse, m.relmse_trimmed,
                        report.hdr.mean, report.exposures.count, report.exposures.start, report.exposures.stop,
                        report.ldr.mean);
 }
@@ -131,30 +112,10 @@ Report measure(ImageF& reference, ImageF& test, float scale)
 
 int run(const Options& options)
 {
-    ImageF images[2];
-    const std::string* names[2] = {&options.reference, &options.test};
-    for (int i = 0; i < 2; ++i)
-    {
-        Result<ImageF> image = readExr(*names[i]);
-        if (!image)
-            return fail(*names[i], image.error());
-        images[i] = std::move(*image);
-    }
-    auto& [reference, test] = images;
-    if (reference.width != test.width || reference.height != test.height)
-        return fail(options.test,
-                    {ExitCode::kInvalid,
-                     fmt::format("The image has {} x {} pixels but the reference {} has {} x {}; render both "
-                                 "in the same size.",
-                                 test.width, test.height, options.reference, reference.width, reference.height)});
-    for (int i = 0; i < 2; ++i)
-    {
-        Result<ImageF> part = cropped(images[i], options.crop);
-        if (!part)
-            return fail(*names[i], part.error());
-        images[i] = std::move(*part);
-    }
-
+    std::vector<ImageF> images;
+    if (const auto failed = readImages({options.reference, options.test}, options.crop, "reference", images))
+        return *failed;
+    ImageF &reference = images[0], &test = images[1];
     const float scale = std::exp2(options.exposure);
     const Report report = measure(reference, test, scale);
     if (!options.png.empty())
@@ -174,13 +135,14 @@ int main(int argc, char** argv)
 {
     Options options;
     CLI::App app{
-        "Says how far the rendering TEST is from the rendering REFERENCE. Both are linear OpenEXR images of one "
+        "Says how far the rendering TEST is from the rendering REFERENCE, or with --welch whether two sets of renderings "
+        "differ by more than noise. All are linear OpenEXR images of one "
         "size.\nExit codes: 0 done, 1 usage, 2 a file cannot be read or written, 3 not a matching image, "
         "4 out of memory, 5 unsupported image.",
         "lumicut-compare"};
     app.set_version_flag("--version", "lumicut-compare " LUMICUT_VERSION);
-    app.add_option("REFERENCE", options.reference, "the image taken as right (.exr)")->required();
-    app.add_option("TEST", options.test, "the image to judge (.exr)")->required();
+    app.add_option("REFERENCE", options.reference, "the image taken as right (.exr)");
+    app.add_option("TEST", options.test, "the image to judge (.exr)");
     app.add_option("--png", options.png, "write reference, test and signed difference side by side (.png)");
     app.add_flag("--flip-map", options.flip_panel, "add the HDR-FLIP error map to the picture");
     app.add_option("--exposure", options.exposure, "stops of exposure for the picture and LDR-FLIP [0]")
@@ -188,15 +150,23 @@ int main(int argc, char** argv)
     app.add_option("--crop", options.crop, "look only at pixels X0 <= x < X1, Y0 <= y < Y1 (X0,Y0,X1,Y1)")
         ->delimiter(',')
         ->expected(4);
+    addWelchOptions(app, options.welch);
     app.add_flag("--json", options.json, "print the result as JSON");
     app.add_flag("--tsv", options.tsv, "print one line of tab-separated figures (see README.md)")->excludes("--json");
     try
     {
         app.parse(argc, argv);
+        if (!options.welch.asked() && (options.reference.empty() || options.test.empty()))
+            throw CLI::RequiredError("REFERENCE and TEST, or --welch and --against,");
     }
     catch (const CLI::ParseError& problem)
     {
         return app.exit(problem) == 0 ? int(ExitCode::kOk) : int(ExitCode::kUsage);
+    }
+    if (options.welch.asked())
+    {
+        const Output output = options.json ? Output::kJson : options.tsv ? Output::kTsv : Output::kText;
+        return runWelch(options.welch, options.crop, output);
     }
     return run(options);
 }

@@ -33,15 +33,19 @@ void setMeans(const ImageF& reference, const ImageF& test, Metrics& metrics)
 void setErrors(const ImageF& reference, const ImageF& test, Metrics& metrics)
 {
     std::vector<double> relative(reference.pixelCount()); // per pixel, mean over channels
-    double squares = 0;
+    double squares = 0, differences = 0, sum = 0;
     for (size_t i = 0; i < reference.rgb.size(); ++i)
     {
         const double r = double(reference.rgb[i]);
         const double difference = square(double(test.rgb[i]) - r);
         squares += difference;
+        differences += std::abs(double(test.rgb[i]) - r);
+        sum += r;
         relative[i / 3] += difference / (square(r) + kRelMseEpsilon) / 3.0;
     }
     metrics.rmse = std::sqrt(squares / double(reference.rgb.size()));
+    if (differences > 0)
+        metrics.mean_difference = sum > 0 ? differences / sum : std::numeric_limits<double>::infinity();
 
     const size_t worst_count = (relative.size() + 999) / 1000;
     const size_t kept = std::max<size_t>(relative.size() - worst_count, 1);

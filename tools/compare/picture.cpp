@@ -80,3 +80,19 @@ Picture sideBySide(const ImageF& reference, const ImageF& test, float scale, con
     }
     return picture;
 }
+
+Picture pValueMap(const WelchResult& result)
+{
+    Picture picture{result.columns, result.rows, {}};
+    for (uint32_t tile = 0; tile < result.columns * result.rows; ++tile)
+    {
+        const auto first = result.tests.begin() + std::ptrdiff_t(3 * tile);
+        const WelchTest& least = *std::min_element(first, first + 3, [](const auto& x, const auto& y) { return x.p < y.p; });
+        const uint8_t level = uint8_t(255.0 * least.p + 0.5);
+        Bytes color{level, level, level};
+        if (least.p < result.threshold)
+            color = least.difference > 0 ? Bytes{255, 0, 0} : Bytes{0, 0, 255};
+        picture.rgb.insert(picture.rgb.end(), color.begin(), color.end());
+    }
+    return picture;
+}

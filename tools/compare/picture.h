@@ -1,6 +1,7 @@
 // The picture that shows where two renderings differ.
 #pragma once
 #include "tools/compare/flip.h"
+#include "tools/compare/welch.h"
 #include "tools/image/image.h"
 
 #include <optional>
@@ -17,3 +18,7 @@ struct Picture
 /// where the test is brighter, blue where darker, full at 25 %. FLIP: black (none) over purple and orange to yellow
 /// (1).
 Picture sideBySide(const ImageF& reference, const ImageF& test, float scale, const std::optional<FlipMap>& flip);
+
+/// One pixel a tile: grey of the level p (even noise where only chance is at work) of the channel with the smallest;
+/// where that is below the threshold, red where set a is brighter, blue where it is darker.
+Picture pValueMap(const WelchResult& result);

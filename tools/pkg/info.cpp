@@ -28,6 +28,13 @@ Json vec(const lumicut::fb::Vec3* v)
     return {v->x(), v->y(), v->z()};
 }
 
+/// Metres, of the package's zero in the source's coordinates.
+std::array<double, 3> origin(const lumicut::fb::Meta& meta)
+{
+    const lumicut::fb::Vec3d* const v = meta.origin();
+    return v ? std::array<double, 3>{v->x(), v->y(), v->z()} : std::array<double, 3>{};
+}
+
 Json cameras(const lumicut::fb::Meta& meta)
 {
     Json json = Json::array();
@@ -108,6 +115,8 @@ Json describe(const package::Package& package)
     Json json{{"file_bytes", package.fileBytes()},
               {"bounds_min", vec(meta.bounds_min())},
               {"bounds_max", vec(meta.bounds_max())},
+              {"origin", origin(meta)},
+              {"unit", meta.unit()},
               {"triangles", package.triangles().size()},
               {"vertices", package.vertexAttributes().size()},
               {"bvh_nodes", package.bvhNodes().size()},
@@ -150,15 +159,22 @@ std::string joined(const Json& strings)
     return printable(all.empty() ? "-" : all);
 }
 
+/// What lengths in the package are in.
+std::string unitOf(const lumicut::fb::Meta& meta)
+{
+    return meta.unit() == 1 ? "m" : "units";
+}
+
 void printCameras(const lumicut::fb::Meta& meta)
 {
+    const std::string unit = unitOf(meta);
     for (const lumicut::fb::Camera* camera : *meta.cameras())
     {
         const bool perspective = camera->vertical_fov() > 0;
         fmt::print("camera       \"{}\" at ({:.3g}, {:.3g}, {:.3g}), {}\n", printable(text(camera->name())),
                    camera->position()->x(), camera->position()->y(), camera->position()->z(),
                    perspective ? fmt::format("{:.1f} degrees", double(camera->vertical_fov()) * 180 / std::numbers::pi)
-                               : fmt::format("orthographic, {:.3g} m", camera->orthographic_height()));
+                               : fmt::format("orthographic, {:.3g} {}", camera->orthographic_height(), unit));
     }
 }
 
@@ -182,9 +198,11 @@ void printText(const std::filesystem::path& path, const package::Package& packag
     fmt::print("source       {}, compiled by version {}\n", printable(text(p.source())),
                printable(text(p.tool_version())));
     fmt::print("copyright    {}\n", joined(list(p.copyright())));
-    fmt::print("bounds       ({:.4g}, {:.4g}, {:.4g}) to ({:.4g}, {:.4g}, {:.4g}) m\n", meta.bounds_min()->x(),
+    fmt::print("bounds       ({:.4g}, {:.4g}, {:.4g}) to ({:.4g}, {:.4g}, {:.4g}) {}\n", meta.bounds_min()->x(),
                meta.bounds_min()->y(), meta.bounds_min()->z(), meta.bounds_max()->x(), meta.bounds_max()->y(),
-               meta.bounds_max()->z());
+               meta.bounds_max()->z(), unitOf(meta));
+    const auto [x, y, z] = origin(meta);
+    fmt::print("origin       ({}, {}, {}) m in the source, unit {} m\n", x, y, z, meta.unit());
     fmt::print("triangles    {}, {} vertices, {} materials, {} textures\n", package.triangles().size(),
                package.vertexAttributes().size(), package.materials().size(), package.textureRefs().size());
     fmt::print("hierarchy    {} nodes, {} triangles, cost {:.2f}, depth {}, stack {}\n", package.bvhNodes().size(),

@@ -29,6 +29,14 @@ void appendUint(std::vector<uint8_t>& bytes, uint32_t value)
         bytes.push_back(uint8_t(value >> shift));
 }
 
+std::vector<uint8_t> withAlpha(const Texture& texture)
+{
+    std::vector<uint8_t> rgba;
+    for (size_t i = 0; i < texture.alpha.size(); ++i)
+        rgba.insert(rgba.end(), {texture.rgb[3 * i], texture.rgb[3 * i + 1], texture.rgb[3 * i + 2], texture.alpha[i]});
+    return rgba;
+}
+
 /// Quaternion that turns -Z to `forward` with +Y up as far as possible.
 Json lookRotation(Vec3 forward)
 {
@@ -101,7 +109,9 @@ uint32_t GltfWriter::addAccessor(const void* data, size_t count, size_t componen
 
 uint32_t GltfWriter::addTexture(const std::string& name, const Texture& texture)
 {
-    const std::vector<uint8_t> png = encodePng(texture.size, texture.size, 3, texture.rgb);
+    const std::vector<uint8_t> png = texture.alpha.empty()
+                                         ? encodePng(texture.size, texture.size, 3, texture.rgb)
+                                         : encodePng(texture.size, texture.size, 4, withAlpha(texture));
     const uint32_t view = addView(png.data(), png.size(), 0);
     json_["images"].push_back({{"name", name}, {"mimeType", "image/png"}, {"bufferView", view}});
     if (!json_.contains("samplers"))
@@ -124,6 +134,11 @@ uint32_t GltfWriter::addMaterial(const MaterialDescription& material)
         json["normalTexture"] = {{"index", *material.normal_texture}, {"scale", material.normal_scale}};
     if (material.double_sided)
         json["doubleSided"] = true;
+    if (material.alpha_cutoff)
+    {
+        json["alphaMode"] = "MASK";
+        json["alphaCutoff"] = *material.alpha_cutoff;
+    }
 
     const auto extend = [&](const char* name, const Json& values)
     {
@@ -183,6 +198,12 @@ uint32_t GltfWriter::addMesh(const std::string& name, const Mesh& mesh, uint32_t
     return uint32_t(mesh_triangles_.size() - 1);
 }
 
+void GltfWriter::addRoot(Json node)
+{
+    json_["nodes"].push_back(std::move(node));
+    json_["scenes"][0]["nodes"].push_back(json_["nodes"].size() - 1);
+}
+
 void GltfWriter::addNode(const std::string& name, uint32_t mesh, Vec3 translation, float turn_about_y)
 {
     Json node = {{"name", name}, {"mesh", mesh}};
@@ -190,8 +211,7 @@ void GltfWriter::addNode(const std::string& name, uint32_t mesh, Vec3 translatio
         node["translation"] = triple(translation);
     if (turn_about_y != 0)
         node["rotation"] = {0, std::sin(turn_about_y / 2), 0, std::cos(turn_about_y / 2)};
-    json_["nodes"].push_back(node);
-    json_["scenes"][0]["nodes"].push_back(json_["nodes"].size() - 1);
+    addRoot(std::move(node));
     triangle_count_ += mesh_triangles_[mesh];
 }
 
@@ -199,21 +219,54 @@ void GltfWriter::addCamera(const std::string& name, Vec3 eye, Vec3 target, float
 {
     json_["cameras"].push_back(
         {{"name", name}, {"type", "perspective"}, {"perspective", {{"yfov", vertical_fov}, {"znear", 0.01}}}});
-    json_["nodes"].push_back({{"name", name},
-                              {"camera", json_["cameras"].size() - 1},
-                              {"translation", triple(eye)},
-                              {"rotation", lookRotation(target - eye)}});
-    json_["scenes"][0]["nodes"].push_back(json_["nodes"].size() - 1);
+    addRoot({{"name", name},
+             {"camera", json_["cameras"].size() - 1},
+             {"translation", triple(eye)},
+             {"rotation", lookRotation(target - eye)}});
+}
+
+void GltfWriter::addLight(Json light, Json node)
+{
+    useExtension("KHR_lights_punctual");
+    Json& lights = json_["extensions"]["KHR_lights_punctual"]["lights"];
+    lights.push_back(std::move(light));
+    node["extensions"] = {{"KHR_lights_punctual", {{"light", lights.size() - 1}}}};
+    addRoot(std::move(node));
 }
 
 void GltfWriter::addSun(const std::string& name, Vec3 travels, Vec3 color, float irradiance)
 {
-    useExtension("KHR_lights_punctual");
-    Json& lights = json_["extensions"]["KHR_lights_punctual"]["lights"];
-    lights.push_back({{"name", name}, {"type", "directional"}, {"color", triple(color)}, {"intensity", irradiance}});
-    const Json use = {{"KHR_lights_punctual", {{"light", lights.size() - 1}}}};
-    json_["nodes"].push_back({{"name", name}, {"rotation", lookRotation(travels)}, {"extensions", use}});
-    json_["scenes"][0]["nodes"].push_back(json_["nodes"].size() - 1);
+    addLight({{"name", name}, {"type", "directional"}, {"color", triple(color)}, {"intensity", irradiance}},
+             {{"name", name}, {"rotation", lookRotation(travels)}});
+}
+
+void GltfWriter::addPoint(const std::string& name, Vec3 position, Vec3 color, float intensity)
+{
+    addLight({{"name", name}, {"type", "point"}, {"color", triple(color)}, {"intensity", intensity}},
+             {{"name", name}, {"translation", triple(position)}});
+}
+
+void GltfWriter::addSpot(const std::string& name, Vec3 position, Vec3 shines, Vec3 color, float intensity, float inner,
+                         float outer)
+{
+    addLight({{"name", name},
+              {"type", "spot"},
+              {"color", triple(color)},
+              {"intensity", intensity},
+              {"spot", {{"innerConeAngle", inner}, {"outerConeAngle", outer}}}},
+             {{"name", name}, {"translation", triple(position)}, {"rotation", lookRotation(shines)}});
+}
+
+void GltfWriter::place(const std::string& name, const std::array<double, 3>& translation, double scale)
+{
+    Json node = {{"name", name}, {"translation", translation}};
+    if (scale != 1)
+        node["scale"] = {scale, scale, scale};
+    node["children"] = std::move(json_["scenes"][0]["nodes"]);
+    json_["scenes"][0]["nodes"] = Json::array();
+    addRoot(std::move(node));
+    for (Json& camera : json_["cameras"])
+        camera["perspective"]["znear"] = scale * camera["perspective"]["znear"].get<double>();
 }
 
 std::vector<uint8_t> GltfWriter::glb() const

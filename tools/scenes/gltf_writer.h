@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <array>
 #include <optional>
 #include <string>
 
@@ -17,7 +18,8 @@ struct MaterialDescription
     float roughness = 1;
     bool lambert = false; // KHR_materials_specular with factor and colour 0: no dielectric coat
     bool double_sided = false;
-    Vec3 emission{}; // W/(m^2 sr)
+    std::optional<float> alpha_cutoff; // alphaMode MASK
+    Vec3 emission{};                   // W/(m^2 sr)
     float transmission = 0;
     float ior = 1.5f;
     float thickness = 0; // metres; above 0: a refracting body, else thin-walled
@@ -43,6 +45,13 @@ public:
     }
     void addCamera(const std::string& name, Vec3 eye, Vec3 target, float vertical_fov); // radians
     void addSun(const std::string& name, Vec3 travels, Vec3 color, float irradiance);   // W/m^2 facing it
+    void addPoint(const std::string& name, Vec3 position, Vec3 color, float intensity); // W/sr
+    /// Full intensity (W/sr) up to `inner` radians off the direction `shines`, none from `outer` on.
+    void addSpot(const std::string& name, Vec3 position, Vec3 shines, Vec3 color, float intensity, float inner,
+                 float outer);
+    /// Hangs all nodes so far under a new one that scales and then shifts them, in doubles; clip planes of cameras with
+    /// them.
+    void place(const std::string& name, const std::array<double, 3>& translation, double scale);
 
     uint64_t triangleCount() const { return triangle_count_; } // as placed by nodes
     std::vector<uint8_t> glb() const;
@@ -51,6 +60,8 @@ private:
     uint32_t addView(const void* data, size_t bytes, int target);
     uint32_t addAccessor(const void* data, size_t count, size_t components, int component_type, int target);
     void useExtension(const std::string& name);
+    void addRoot(nlohmann::ordered_json node);
+    void addLight(nlohmann::ordered_json light, nlohmann::ordered_json node);
 
     nlohmann::ordered_json json_;
     std::vector<uint8_t> binary_;

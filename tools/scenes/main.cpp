@@ -1,4 +1,4 @@
-// lumicut-scenes: writes the demo scenes as binary glTF files. The same program writes the same bytes.
+// lumicut-scenes: writes its scenes as binary glTF files. The same program writes the same bytes.
 #include "tools/image/write_image.h"
 #include "tools/scenes/scenes.h"
 
@@ -7,13 +7,6 @@
 
 namespace
 {
-
-struct Scene
-{
-    const char* name;
-    GltfWriter (*build)();
-};
-constexpr Scene kScenes[] = {{"cornell", cornellScene}, {"caustics", causticsScene}, {"atrium", atriumScene}};
 
 int fail(const std::string& file, const Error& error)
 {
@@ -27,7 +20,7 @@ int run(const std::string& folder, const std::vector<std::string>& names)
     std::filesystem::create_directories(folder, problem);
     if (problem)
         return fail(folder, {ExitCode::kIo, fmt::format("The folder cannot be created: {}.", problem.message())});
-    for (const Scene& scene : kScenes)
+    for (const Scene& scene : allScenes())
     {
         if (!names.empty() && std::find(names.begin(), names.end(), scene.name) == names.end())
             continue;
@@ -47,16 +40,20 @@ int main(int argc, char** argv)
 {
     std::string folder;
     std::vector<std::string> names;
-    CLI::App app{
-        "Writes the demo scenes (CC0) as binary glTF files into OUTDIR.\nExit codes: 0 done, 1 usage, 2 a file "
-        "cannot be written.",
-        "lumicut-scenes"};
+    CLI::App app{"Writes scenes (CC0) as binary glTF files into OUTDIR.\nExit codes: 0 done, 1 usage, 2 a file "
+                 "cannot be written.",
+                 "lumicut-scenes"};
     app.set_version_flag("--version", "lumicut-scenes " LUMICUT_VERSION);
     app.add_option("OUTDIR", folder, "where to write; made if it is not there")->required();
     std::vector<std::string> known;
-    for (const Scene& scene : kScenes)
+    std::string list = "Scenes:\n";
+    for (const Scene& scene : allScenes())
+    {
         known.push_back(scene.name);
-    app.add_option("NAME", names, "which scenes (all): cornell, caustics, atrium")->check(CLI::IsMember(known));
+        list += fmt::format("  {:<17} {}\n", scene.name, scene.about);
+    }
+    app.footer(list);
+    app.add_option("NAME", names, "which scenes, of those below (all)")->check(CLI::IsMember(known));
     try
     {
         app.parse(argc, argv);

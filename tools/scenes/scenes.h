@@ -1,8 +1,18 @@
-// The demo scenes, each built from nothing into a binary glTF file. All CC0.
+// The scenes, each built from nothing into a binary glTF file. All CC0.
 #pragma once
 #include "tools/scenes/gltf_writer.h"
 
-#include <string_view>
+#include <span>
+
+struct Scene
+{
+    const char* name;
+    GltfWriter (*build)();
+    const char* about; // one clause, for lists
+};
+
+/// Every scene, in the order in which they are listed and written.
+std::span<const Scene> allScenes();
 
 /// A Cornell box of 1 m: Lambertian walls, two boxes, one lamp flush in the ceiling.
 GltfWriter cornellScene();
@@ -12,3 +22,33 @@ GltfWriter causticsScene();
 
 /// A two-storey hall with colonnades, banners, sun through a skylight, lanterns, a mirror, metal and glass.
 GltfWriter atriumScene();
+
+/// A room of single sheets with a window; the sun lights their outside. Metres times `scale`.
+GltfWriter sheetsScene(double scale = 1);
+
+/// A hall of single sheets with a narrow slot in its roof: all of the light has come through it.
+GltfWriter slotScene();
+
+/// Two closed rooms that share one sheet, the camera in the dim one; the other has a lamp 400 times as bright, or none.
+GltfWriter neighboursScene(bool bright_lamp);
+
+/// A closed room of one albedo with a small lamp: light that has bounced many times.
+GltfWriter brightScene(float albedo);
+
+/// A room with thick walls and a window in the sun, on a ground plane of `ground` metres side (0: none).
+GltfWriter plainScene(float ground);
+
+/// A court with a point and a spot light, all of it placed by one node: at the origin or at map coordinates.
+GltfWriter farScene(bool at_map_coordinates);
+
+/// A wall and, before it in the file and in the very same plane, a cut-out decal of the same colour, or none.
+GltfWriter decalScene(bool decal);
+
+/// Smooth balls of few polygons, or of many, in the light of a low sun.
+GltfWriter terminatorScene(bool fine);
+
+/// A corner with a box and a ball, normals against the winding of the triangles or with it.
+GltfWriter flippedScene(bool against);
+
+/// A floor in dim sun; 30 m above it, with or without, a lamp 2 mm over an opaque shield that hides it from the floor.
+GltfWriter shieldScene(bool lamp);

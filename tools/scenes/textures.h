@@ -7,8 +7,9 @@
 
 struct Texture
 {
-    uint32_t size = 0;        // square, texels
-    std::vector<uint8_t> rgb; // [3 * size * size], row 0 on top
+    uint32_t size = 0;          // square, texels
+    std::vector<uint8_t> rgb;   // [3 * size * size], row 0 on top
+    std::vector<uint8_t> alpha; // [size * size]; empty: opaque
 };
 
 /// What the maps of one material have in common: how it looks, how its surface is bent, how rough it is.

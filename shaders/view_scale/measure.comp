@@ -1,0 +1,47 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "shaders/lib/math.glsl"
+#include "shaders/primary/primary.h"
+#include "shaders/view_scale/view_scale.h"
+
+// The geometric mean of the shading points' distances from the camera: a few far hills in a window do not move it. One group,
+// so that the order of the sum is fixed.
+
+layout(local_size_x = kMeasureGroupSize) in;
+layout(push_constant, scalar) uniform Params { MeasureParams params; };
+
+layout(set = 1, binding = 0, scalar) readonly buffer Points { ShadingPoint points[]; };
+layout(set = 1, binding = 1, scalar) buffer Scale { ViewScale scale; }; // keeps its distance where there is nothing in view
+
+shared vec2 sums[kMeasureGroupSize]; // of logarithms, and points
+
+void main()
+{
+    uint t = gl_LocalInvocationID.x;
+    uint wanted = min(params.point_count, kMeasureGroupSize * kMeasuredPoints);
+    vec2 sum = vec2(0.0);
+    for (uint i = t; i < wanted; i += kMeasureGroupSize)
+    {
+        uint point = uint(float(i) * (float(params.point_count) / float(wanted)));
+        if (point >= params.point_count || points[point].slot == kNone)
+            continue;
+        float distance = length(points[point].position - params.focus);
+        if (distance > 0.0)
+            sum += vec2(log(distance), 1.0);
+    }
+    sums[t] = sum;
+    for (uint half_ = kMeasureGroupSize / 2u; half_ > 0u; half_ /= 2u)
+    {
+        barrier();
+        if (t < half_)
+            sums[t] += sums[t + half_];
+    }
+    if (t != 0u)
+        return;
+    scale.focus = params.focus;
+    if (params.fixed_distance > 0.0)
+        scale.distance = params.fixed_distance;
+    else if (sums[0].y > 0.0)
+        scale.distance = exp(sums[0].x / sums[0].y);
+}
