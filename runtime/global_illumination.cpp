@@ -153,7 +153,7 @@ const Buffer& GlobalIllumination::record(Recorder& rec, const RayStage& rays, co
     return frame.radiance;
 }
 
-/// Delta events that photons and gathering rays follow: each costs rays a pass over a mostly empty queue. Without mirrors
+/// Delta events that gathering rays follow: each costs rays a pass over a mostly empty queue. Without mirrors
 /// and glass there are only smooth layers over something diffuse, whose third reflections are too faint to matter.
 uint32_t GlobalIllumination::chainDepth(const Settings& settings) const
 {

@@ -27,7 +27,7 @@ constexpr std::array kKnobs{
     choice("cut.mode", &Settings::cut_mode, kCutModes, "how gather rays read the photons"),
     Knob{"cut.iterations", &Settings::cut_iterations, 0, 16, "", "rounds of refinement of the illumination cut"},
     Knob{"cut.difference", &Settings::cut_difference, 0, 10, "", "relative difference of irradiance that refinement lets pass"},
-    Knob{"cut.probes", &Settings::cut_probes, 0, 64, "", "rays that a node of the cut feels for its surface with"},
+    Knob{"cut.probes", &Settings::cut_probes, 0, 64, "", "coverage probe rays of a node of the cut"},
     choice("samples.mode", &Settings::samples_mode, kSamplesModes, "how irradiance samples are placed"),
     Knob{"samples.count", &Settings::sample_count, 16, 65536, "", "irradiance samples a frame"},
     Knob{"samples.iterations", &Settings::sample_iterations, 0, 16, "", "iterations of k-means"},

@@ -26,7 +26,7 @@ public:
         float radius;          // of density estimation at most: of the distance from the viewer
         float shrink;    // of the nodes' supports, <= 1: in a standing picture they may be as noisy as they are sharp
         uint32_t fewest = gpu::kCutFewest; // photons of a node that is not divided further: less where supports have shrunk
-        uint32_t probes; // rays that a node feels for its surface with; 0: it is taken for a plane
+        uint32_t probes; // coverage probe rays of a node; 0: it is taken for a plane without walls
         uint32_t rim_probes = 0; // rays besides that say where a lookup need not ask what is seen: they pay where lookups are many
         uint32_t seed;
         bool operator==(const Input&) const = default; // equal input over one map gives one cut
