@@ -56,5 +56,13 @@ struct CellDraw
 };
 GPU_SIZE(CellDraw, 8);
 
+struct PairDraw
+{
+    vec2 pair;
+    float weight; // density of the uniform pair over this one's
+    uint cell;    // that its direction lies in
+};
+GPU_SIZE(PairDraw, 16);
+
 GPU_NAMESPACE_END
 #endif
