@@ -16,7 +16,7 @@ vec3 reflectedLight(Bsdf b, mat3 frame, vec3 wo, Incident light)
     wide.alpha = max(b.alpha, kLeastAlpha);
     BsdfValue f = evaluateBsdf(wide, wo, normalize(wi));
     vec3 kept = wide.alpha == b.alpha ? vec3(1.0) : glossyReflectance(b, wo.z) / max(glossyReflectance(wide, wo.z), vec3(1e-6));
-    return f.diffuse * light.irradiance + f.specular * kept * light.spoken;
+    return f.diffuse * light.irradiance + f.specular * kept * light.in_its_color;
 }
 
 struct Link
