@@ -44,6 +44,8 @@ std::unique_ptr<fb::CameraT> camera(const CameraView& view)
     c->up = box(view.up);
     c->vertical_fov = view.vertical_fov;
     c->orthographic_height = view.orthographic_height;
+    c->near_plane = view.near_plane;
+    c->far_plane = view.far_plane;
     return c;
 }
 

@@ -72,6 +72,8 @@ struct CameraView
     gpu::vec3 up{0, 1, 0};       // unit, orthogonal to forward
     float vertical_fov = 0;        // radians; 0: orthographic
     float orthographic_height = 0; // 0: perspective
+    float near_plane = 0;          // distance along forward before which nothing is seen
+    float far_plane = 0;           // distance along forward behind which nothing is seen; 0: there is none
 };
 
 /// Counts of what import and clean-up did; they end in the report and in Meta.statistics.

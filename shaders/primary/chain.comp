@@ -74,6 +74,8 @@ void main()
     Ray ray = loadRay(i);
     Hit hit = loadHit(i);
     ShadingPoint point = ShadingPoint(vec3(0.0), kNone, ray.direction, params.depth, vec3(1.0), vec2(0.0), params.width, 0.0);
+    if (params.depth == 0u)
+        point.width += params.spread * length(ray.origin - params.eye); // the near plane is where it starts
     vec3 before = vec3(0.0);
     if (params.depth > 0u)
     {

@@ -44,7 +44,9 @@ Json cameras(const lumicut::fb::Meta& meta)
                         {"forward", vec(camera->forward())},
                         {"up", vec(camera->up())},
                         {"vertical_fov", camera->vertical_fov()},
-                        {"orthographic_height", camera->orthographic_height()}});
+                        {"orthographic_height", camera->orthographic_height()},
+                        {"near_plane", camera->near_plane()},
+                        {"far_plane", camera->far_plane()}});
     return json;
 }
 
