@@ -170,7 +170,7 @@ Result<CompileReport> runPipeline(const CompileOptions& options)
     watch.stage("read", fmt::format("{} meshes, {} materials, {} images", file->model.meshes.size(),
                                     file->model.materials.size(), file->images.size()));
 
-    Result<ImportedScene> imported = importScene(*file);
+    Result<ImportedScene> imported = importScene(*file, {options.scene, options.variant});
     if (!imported)
         return imported.error();
     SceneData& scene = imported->scene;

@@ -15,6 +15,8 @@ struct CompileOptions
 {
     std::filesystem::path input;  // .gltf or .glb
     std::filesystem::path output; // .lumi
+    std::string scene{};          // of the file, name or index; empty: its default
+    std::string variant{};        // of KHR_materials_variants; empty: none
     std::optional<std::filesystem::path> environment{};
     std::optional<PunctualLight> sun{};
     std::vector<CameraView> views{}; // in the file's coordinates; come before its own cameras

@@ -10,8 +10,9 @@
 
 namespace
 {
-constexpr std::array<std::string_view, 14> kHonoured{
+constexpr std::array<std::string_view, 17> kHonoured{
     "EXT_mesh_gpu_instancing",
+    "EXT_meshopt_compression",
     "EXT_texture_webp",
     "KHR_draco_mesh_compression",
     "KHR_lights_punctual",
@@ -21,13 +22,15 @@ constexpr std::array<std::string_view, 14> kHonoured{
     "KHR_materials_specular",
     "KHR_materials_transmission",
     "KHR_materials_unlit",
+    "KHR_materials_variants",
     "KHR_materials_volume",
     "KHR_mesh_quantization",
+    "KHR_meshopt_compression",
     "KHR_node_visibility",
     "KHR_texture_transform",
 };
 // Leaving these out keeps the picture as its author meant it to be without a choice of the user.
-constexpr std::array<std::string_view, 3> kHarmless{"KHR_materials_variants", "KHR_xmp", "KHR_xmp_json_ld"};
+constexpr std::array<std::string_view, 2> kHarmless{"KHR_xmp", "KHR_xmp_json_ld"};
 
 template <size_t n>
 bool contains(const std::array<std::string_view, n>& list, std::string_view name)
@@ -58,10 +61,6 @@ std::string refusal(const std::string& name)
         return "its textures are there as KTX2 (Basis Universal) only, which is not supported; export them as PNG, "
                "JPEG "
                "or WebP (required extension KHR_texture_basisu)";
-    if (name == "EXT_meshopt_compression" || name == "KHR_meshopt_compression")
-        return fmt::format("its geometry is meshopt-compressed, which is not supported; export it uncompressed or with "
-                           "Draco (required extension {})",
-                           name);
     return fmt::format(
         "it requires the extension {}, which is not supported; export the scene without it (/extensionsRequired)",
         name.substr(0, 100));

@@ -1,7 +1,7 @@
 #include "compiler/gltf_mesh.h"
 
-#include "compiler/gltf_accessor.h"
-#include "compiler/gltf_draco.h"
+#include "compiler/gltf_attributes.h"
+#include "compiler/gltf_morph.h"
 #include "compiler/linear.h"
 
 #include <fmt/format.h>
@@ -11,44 +11,6 @@
 
 namespace
 {
-/// Attributes of one primitive, from Draco where it has them, else from accessors.
-class AttributeSource
-{
-public:
-    AttributeSource(const tinygltf::Model& model, const tinygltf::Primitive& primitive, const DracoMesh* draco)
-        : model_(model), primitive_(primitive), draco_(draco)
-    {
-    }
-
-    Result<FloatArray> read(const char* name, uint32_t min_components, uint32_t max_components,
-                            size_t vertex_count) const
-    {
-        const auto attribute = primitive_.attributes.find(name);
-        if (attribute == primitive_.attributes.end())
-            return FloatArray{};
-        Result<FloatArray> array = FloatArray{};
-        if (draco_ != nullptr && draco_->attributes.contains(name))
-            array = draco_->attributes.at(name);
-        else
-            array = readFloats(model_, attribute->second, min_components, max_components);
-        if (!array)
-            return Error{array.error().code, fmt::format("{}: {}", name, array.error().message)};
-        if (array->components < min_components || array->components > max_components)
-            return Error{ExitCode::kInvalid, fmt::format("{} has {} components", name, array->components)};
-        if (vertex_count != kAnyCount && array->count != vertex_count)
-            return Error{ExitCode::kInvalid,
-                         fmt::format("{} has {} elements for {} vertices", name, array->count, vertex_count)};
-        return array;
-    }
-
-    static constexpr size_t kAnyCount = ~size_t(0);
-
-private:
-    const tinygltf::Model& model_;
-    const tinygltf::Primitive& primitive_;
-    const DracoMesh* draco_;
-};
-
 template <typename Vector>
 std::vector<Vector> toVectors(const FloatArray& array, float last)
 {
@@ -102,13 +64,14 @@ Result<std::vector<uint32_t>> vertexIndices(const tinygltf::Model& model, const 
 }
 } // namespace
 
-Result<std::optional<MeshPrimitive>> readPrimitive(const tinygltf::Model& model, const tinygltf::Primitive& primitive)
+Result<std::optional<GltfPrimitive>> readPrimitive(const tinygltf::Model& model, const tinygltf::Primitive& primitive,
+                                                   const PrimitiveShape& shape)
 {
     const int mode = primitive.mode;
     if (mode < TINYGLTF_MODE_POINTS || mode > TINYGLTF_MODE_TRIANGLE_FAN)
         return Error{ExitCode::kInvalid, fmt::format("primitive mode {} does not exist", mode)};
     if (mode < TINYGLTF_MODE_TRIANGLES || !primitive.attributes.contains("POSITION"))
-        return std::optional<MeshPrimitive>();
+        return std::optional<GltfPrimitive>();
     const auto draco = decodeDraco(model, primitive);
     if (!draco)
         return draco.error();
@@ -120,7 +83,8 @@ Result<std::optional<MeshPrimitive>> readPrimitive(const tinygltf::Model& model,
     const size_t count = positions->count;
     if (std::any_of(positions->values.begin(), positions->values.end(), [](float v) { return !std::isfinite(v); }))
         return Error{ExitCode::kInvalid, "POSITION holds a number that is not finite"};
-    MeshPrimitive mesh;
+    GltfPrimitive result;
+    MeshPrimitive& mesh = result.mesh;
     mesh.positions = toVectors<gpu::vec3>(*positions, 0);
 
     const Result<FloatArray> normals = source.read("NORMAL", 3, 3, count);
@@ -137,6 +101,16 @@ Result<std::optional<MeshPrimitive>> readPrimitive(const tinygltf::Model& model,
     mesh.uv1 = toVectors<gpu::vec2>(*uv1, 0);
     mesh.colors = toVectors<gpu::vec4>(*colors, 1);
 
+    if (const Status status = applyMorphTargets(model, primitive, shape.morph_weights, mesh); !status)
+        return status.error();
+    if (shape.joint_count > 0)
+    {
+        Result<Influences> influences = readInfluences(source, count, shape.joint_count);
+        if (!influences)
+            return influences.error();
+        result.influences = std::move(*influences);
+    }
+
     if (*draco && (*draco)->vertex_count != count)
         return Error{ExitCode::kInvalid, "Draco data and POSITION have different numbers of vertices"};
     Result<std::vector<uint32_t>> indices =
@@ -144,5 +118,5 @@ Result<std::optional<MeshPrimitive>> readPrimitive(const tinygltf::Model& model,
     if (!indices)
         return indices.error();
     mesh.triangles = assemble(*indices, *draco ? TINYGLTF_MODE_TRIANGLES : mode);
-    return std::optional<MeshPrimitive>(std::move(mesh));
+    return std::optional<GltfPrimitive>(std::move(result));
 }

@@ -1,69 +1,18 @@
 #include "compiler/gltf_scene.h"
 
 #include "compiler/gltf_accessor.h"
+#include "compiler/gltf_node.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 
 namespace
 {
 Error invalid(std::string_view text, size_t node)
 {
     return {ExitCode::kInvalid, fmt::format("{} (/nodes/{})", text, node)};
-}
-
-/// Column-major rotation matrix of a quaternion, normalised.
-std::array<double, 9> rotationMatrix(double x, double y, double z, double w)
-{
-    const double l = std::sqrt(x * x + y * y + z * z + w * w);
-    if (!(l > 0))
-        return {1, 0, 0, 0, 1, 0, 0, 0, 1};
-    x /= l, y /= l, z /= l, w /= l;
-    return {1 - 2 * (y * y + z * z), 2 * (x * y + z * w),     2 * (x * z - y * w),
-            2 * (x * y - z * w),     1 - 2 * (x * x + z * z), 2 * (y * z + x * w),
-            2 * (x * z + y * w),     2 * (y * z - x * w),     1 - 2 * (x * x + y * y)};
-}
-
-Transform fromTrs(const std::array<double, 3>& t, const std::array<double, 4>& r, const std::array<double, 3>& s)
-{
-    Transform result{rotationMatrix(r[0], r[1], r[2], r[3]), t};
-    for (size_t i = 0; i < 9; ++i)
-        result.linear[i] *= s[i / 3];
-    return result;
-}
-
-bool isFiniteTransform(const Transform& t)
-{
-    const auto finite = [](double v) { return std::isfinite(v); };
-    return std::all_of(t.linear.begin(), t.linear.end(), finite) &&
-           std::all_of(t.translation.begin(), t.translation.end(), finite);
-}
-
-Result<Transform> localTransform(const tinygltf::Node& node, size_t index)
-{
-    Transform result;
-    if (!node.matrix.empty())
-    {
-        const auto& m = node.matrix;
-        if (m.size() != 16 || m[3] != 0 || m[7] != 0 || m[11] != 0 || m[15] != 1)
-            return invalid("a node's matrix is not an affine 4 x 4 matrix", index);
-        result = {{m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10]}, {m[12], m[13], m[14]}};
-    }
-    else
-    {
-        const auto& t = node.translation;
-        const auto& r = node.rotation;
-        const auto& s = node.scale;
-        if ((!t.empty() && t.size() != 3) || (!r.empty() && r.size() != 4) || (!s.empty() && s.size() != 3))
-            return invalid("a node's translation, rotation or scale has a wrong number of values", index);
-        result = fromTrs(t.empty() ? std::array<double, 3>{0, 0, 0} : std::array<double, 3>{t[0], t[1], t[2]},
-                         r.empty() ? std::array<double, 4>{0, 0, 0, 1} : std::array<double, 4>{r[0], r[1], r[2], r[3]},
-                         s.empty() ? std::array<double, 3>{1, 1, 1} : std::array<double, 3>{s[0], s[1], s[2]});
-    }
-    if (!isFiniteTransform(result))
-        return invalid("a node's transform is not finite", index);
-    return result;
 }
 
 /// Local transforms of EXT_mesh_gpu_instancing, or the identity alone.
@@ -95,9 +44,9 @@ Result<std::vector<Transform>> instanceTransforms(const tinygltf::Model& model, 
     {
         const auto at = [i](const FloatArray& a, uint32_t c, double fallback)
         { return a.count == 0 ? fallback : double(a.values[i * a.components + c]); };
-        transforms[i] = fromTrs({at(*t, 0, 0), at(*t, 1, 0), at(*t, 2, 0)},
-                                {at(*r, 0, 0), at(*r, 1, 0), at(*r, 2, 0), at(*r, 3, 1)},
-                                {at(*s, 0, 1), at(*s, 1, 1), at(*s, 2, 1)});
+        transforms[i] = fromTranslationRotationScale({at(*t, 0, 0), at(*t, 1, 0), at(*t, 2, 0)},
+                                                     {at(*r, 0, 0), at(*r, 1, 0), at(*r, 2, 0), at(*r, 3, 1)},
+                                                     {at(*s, 0, 1), at(*s, 1, 1), at(*s, 2, 1)});
         if (!isFiniteTransform(transforms[i]))
             return invalid("an instance's transform is not finite", index);
     }
@@ -150,12 +99,28 @@ Result<CameraView> makeCamera(const tinygltf::Camera& from, const tinygltf::Node
         view.orthographic_height = float(2 * from.orthographic.ymag);
     else
         view.vertical_fov = float(from.perspective.yfov);
+    view.near_plane = float(from.type == "orthographic" ? from.orthographic.znear : from.perspective.znear);
+    view.far_plane = float(from.type == "orthographic" ? from.orthographic.zfar : from.perspective.zfar);
     const bool good = from.type == "orthographic"
                           ? view.orthographic_height > 0 && std::isfinite(view.orthographic_height)
                           : view.vertical_fov > 0 && view.vertical_fov < 3.1415f;
     if (!good)
         return Error{ExitCode::kInvalid, fmt::format("a camera has no usable field of view (/cameras/{})", index)};
+    if (!(view.near_plane >= 0) || !std::isfinite(view.near_plane) || !std::isfinite(view.far_plane) ||
+        (view.far_plane != 0 && !(view.far_plane > view.near_plane)))
+        return Error{ExitCode::kInvalid, fmt::format("a camera's planes znear and zfar must be 0 <= znear < zfar "
+                                                     "(/cameras/{})",
+                                                     index)};
     return view;
+}
+
+/// Those of the node, else of its mesh; empty where none differs from 0.
+std::vector<double> morphWeights(const tinygltf::Mesh& mesh, const tinygltf::Node& node)
+{
+    std::vector<double> weights = node.weights.empty() ? mesh.weights : node.weights;
+    while (!weights.empty() && weights.back() == 0)
+        weights.pop_back();
+    return weights;
 }
 
 class Walk
@@ -229,8 +194,14 @@ private:
         const auto instances = instanceTransforms(model_, node, index);
         if (!instances)
             return instances.error();
+        std::vector<double> weights = morphWeights(model_.meshes[size_t(node.mesh)], node);
+        if (node.skin != -1) // its joints place it, wherever its node or instances of it are
+        {
+            nodes_.meshes.push_back({node.mesh, to_world, node.skin, std::move(weights)});
+            return Success{};
+        }
         for (const Transform& instance : *instances)
-            nodes_.meshes.push_back({node.mesh, to_world * instance});
+            nodes_.meshes.push_back({node.mesh, to_world * instance, -1, weights});
         return Success{};
     }
 
@@ -267,18 +238,41 @@ private:
     std::vector<bool> visited_;
     SceneNodes nodes_;
 };
-} // namespace
-
-Result<SceneNodes> walkScene(const tinygltf::Model& model)
+/// The scene that `wanted` names or numbers; where it is empty the file's default, else its first.
+Result<size_t> chooseScene(const tinygltf::Model& model, const std::string& wanted)
 {
     if (model.scenes.empty())
         return Error{ExitCode::kInvalid, "it has no scene, so there is nothing to compile (/scenes)"};
-    const int scene = model.defaultScene == -1 ? 0 : model.defaultScene;
-    if (scene < 0 || size_t(scene) >= model.scenes.size())
-        return Error{ExitCode::kInvalid, fmt::format("scene {} does not exist (/scene)", scene)};
-    Result<SceneNodes> nodes = Walk(model).run(model.scenes[size_t(scene)].nodes);
-    if (nodes && model.defaultScene == -1 && model.scenes.size() > 1)
-        nodes->warnings.push_back(
-            fmt::format("the file names no default scene; the first of {} is compiled", model.scenes.size()));
+    if (wanted.empty())
+    {
+        const int scene = model.defaultScene == -1 ? 0 : model.defaultScene;
+        if (scene < 0 || size_t(scene) >= model.scenes.size())
+            return Error{ExitCode::kInvalid, fmt::format("scene {} does not exist (/scene)", scene)};
+        return size_t(scene);
+    }
+    for (size_t i = 0; i < model.scenes.size(); ++i)
+        if (model.scenes[i].name == wanted)
+            return i;
+    size_t index = 0;
+    const char* const end = wanted.data() + wanted.size();
+    const auto [stop, failure] = std::from_chars(wanted.data(), end, index);
+    if (failure == std::errc() && stop == end && index < model.scenes.size())
+        return index;
+    std::string names;
+    for (size_t i = 0; i < model.scenes.size(); ++i)
+        names += fmt::format("{}\"{}\" ({})", i == 0 ? "" : ", ", model.scenes[i].name, i);
+    return Error{ExitCode::kUsage, fmt::format("there is no scene \"{}\"; the file has {}", wanted, names)};
+}
+} // namespace
+
+Result<SceneNodes> walkScene(const tinygltf::Model& model, const std::string& wanted)
+{
+    const Result<size_t> scene = chooseScene(model, wanted);
+    if (!scene)
+        return scene.error();
+    Result<SceneNodes> nodes = Walk(model).run(model.scenes[*scene].nodes);
+    if (nodes && wanted.empty() && model.defaultScene == -1 && model.scenes.size() > 1)
+        nodes->warnings.push_back(fmt::format(
+            "the file names no default scene; the first of {} is compiled (--scene chooses)", model.scenes.size()));
     return nodes;
 }

@@ -2,6 +2,7 @@
 
 #include "compiler/gltf_material.h"
 #include "compiler/gltf_mesh.h"
+#include "compiler/gltf_variants.h"
 #include "compiler/parallel.h"
 
 #include <fmt/format.h>
@@ -10,63 +11,159 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <tuple>
 
 namespace
 {
 constexpr float kCreaseAngle = 1.0471976f; // 60 degrees: sharper edges stay sharp where normals are made
 
-/// One primitive of a mesh in use, on its way in.
+/// A mesh as one or more instances show it: morphed by their weights, placed by their joints.
+struct Shape
+{
+    int mesh = 0;
+    std::vector<double> morph_weights;
+    const MeshInstance* skinned = nullptr; // the one instance that shows it, if joints place it
+    size_t first_primitive = 0;            // into ImportedScene::primitives, once they are there
+    size_t primitive_count = 0;
+};
+
+/// One primitive of a shape, on its way in.
 struct Job
 {
-    int mesh;
-    size_t primitive;
+    const Shape* shape;
+    const tinygltf::Primitive* source;
+    size_t number; // of the primitive in its mesh
     std::optional<MeshPrimitive> result;
     std::optional<Error> error;
     uint64_t generated_normals = 0;
     uint64_t generated_tangents = 0;
+    uint64_t weightless_vertices = 0;
+    bool lacks_joints = false; // though its node has a skin
 };
 
-/// The primitives of every mesh that some instance shows, by mesh and number.
-std::vector<Job> primitivesInUse(const tinygltf::Model& model, const std::vector<MeshInstance>& instances)
+/// The shapes that `instances` show, by mesh, and which of them each instance shows.
+std::vector<Shape> shapesInUse(const std::vector<MeshInstance>& instances, std::vector<size_t>& shape_of_instance)
 {
-    std::set<int> meshes;
-    for (const MeshInstance& instance : instances)
-        meshes.insert(instance.mesh);
+    using Key = std::tuple<int, std::vector<double>, size_t>; // mesh, weights, 1 + index of a skinned instance
+    std::map<Key, std::vector<size_t>> instances_of;
+    for (size_t i = 0; i < instances.size(); ++i)
+        instances_of[{instances[i].mesh, instances[i].morph_weights, instances[i].skin == -1 ? 0 : i + 1}].push_back(i);
+    std::vector<Shape> shapes;
+    shape_of_instance.resize(instances.size());
+    for (const auto& [key, members] : instances_of)
+    {
+        const auto& [mesh, weights, skinned] = key;
+        for (const size_t i : members)
+            shape_of_instance[i] = shapes.size();
+        shapes.push_back({mesh, weights, skinned == 0 ? nullptr : &instances[skinned - 1]});
+    }
+    return shapes;
+}
+
+std::vector<Job> primitivesOf(const tinygltf::Model& model, const std::vector<Shape>& shapes)
+{
     std::vector<Job> jobs;
-    for (const int mesh : meshes)
-        for (size_t p = 0; p < model.meshes[size_t(mesh)].primitives.size(); ++p)
-            jobs.push_back({mesh, p, {}, {}});
+    for (const Shape& shape : shapes)
+    {
+        const auto& primitives = model.meshes[size_t(shape.mesh)].primitives;
+        for (size_t p = 0; p < primitives.size(); ++p)
+            jobs.push_back({&shape, &primitives[p], p, {}, {}});
+    }
     return jobs;
 }
 
+/// Each shape has vertices of its own, so that many instances could ask for much memory.
+Status checkVertexTotal(const tinygltf::Model& model, const std::vector<Job>& jobs)
+{
+    constexpr uint64_t kMostVertices = 150'000'000;
+    uint64_t total = 0;
+    for (const Job& job : jobs)
+    {
+        const auto positions = job.source->attributes.find("POSITION");
+        if (positions == job.source->attributes.end() || positions->second < 0 ||
+            size_t(positions->second) >= model.accessors.size())
+            continue;
+        total += std::min<uint64_t>(model.accessors[size_t(positions->second)].count, kMostVertices + 1);
+        if (total > kMostVertices)
+            return Error{ExitCode::kUnsupported,
+                         fmt::format("its meshes, in all their poses, have more than {} vertices", kMostVertices)};
+    }
+    return Success{};
+}
+
 /// Reads the materials that `jobs` name and sets the jobs' material indices.
-Status readMaterials(const GltfFile& file, std::vector<Job>& jobs, ImportedScene& imported)
+Status readMaterials(const GltfFile& file, int variant, std::vector<Job>& jobs, ImportedScene& imported)
 {
     std::set<int> in_use;
-    const auto material = [&](const Job& job)
-    { return file.model.meshes[size_t(job.mesh)].primitives[job.primitive].material; };
+    const auto material = [&](const Job& job) { return std::max(materialOf(*job.source, variant), -1); };
     for (const Job& job : jobs)
         if (job.result)
-            in_use.insert(std::max(material(job), -1));
+            in_use.insert(material(job));
     const std::vector<int> used(in_use.begin(), in_use.end());
     if (Status status = importMaterials(file, used, imported.scene, imported.images); !status)
         return status;
     for (Job& job : jobs)
         if (job.result)
-            job.result->material =
-                uint32_t(std::lower_bound(used.begin(), used.end(), std::max(material(job), -1)) - used.begin());
+            job.result->material = uint32_t(std::lower_bound(used.begin(), used.end(), material(job)) - used.begin());
     return Success{};
 }
 
-void readGeometry(const tinygltf::Model& model, Job& job)
+/// The poses of the skins that `shapes` need, by number.
+Result<std::map<int, SkinPose>> poseSkins(const GltfFile& file, const std::vector<Shape>& shapes)
 {
-    Result<std::optional<MeshPrimitive>> read =
-        readPrimitive(model, model.meshes[size_t(job.mesh)].primitives[job.primitive]);
+    std::map<int, SkinPose> poses;
+    NodeTransforms nodes(file.model);
+    for (const Shape& shape : shapes)
+    {
+        if (shape.skinned == nullptr || poses.contains(shape.skinned->skin))
+            continue;
+        Result<SkinPose> pose = poseSkin(file, shape.skinned->skin, nodes);
+        if (!pose)
+            return pose.error();
+        poses.emplace(shape.skinned->skin, std::move(*pose));
+    }
+    return poses;
+}
+
+/// @param pose of the shape's skin, null without one
+Status readGeometry(const tinygltf::Model& model, const SkinPose* pose, Job& job)
+{
+    const Shape& shape = *job.shape;
+    auto read = readPrimitive(model, *job.source,
+                              {.morph_weights = shape.morph_weights, .joint_count = pose ? pose->joints.size() : 0});
     if (!read)
-        job.error = Error{read.error().code,
-                          fmt::format("{} (/meshes/{}/primitives/{})", read.error().message, job.mesh, job.primitive)};
-    else
-        job.result = std::move(*read);
+        return read.error();
+    if (!*read)
+        return Success{};
+    GltfPrimitive& primitive = **read;
+    if (pose != nullptr)
+    {
+        job.weightless_vertices = primitive.influences.weightless_vertices;
+        job.lacks_joints = primitive.influences.per_vertex == 0;
+        if (Status status = skinMesh(*pose, primitive.influences, shape.skinned->to_world, primitive.mesh); !status)
+            return status;
+    }
+    job.result = std::move(primitive.mesh);
+    return Success{};
+}
+
+/// Reads all jobs; the first error in their order is the one that is returned.
+Status readAll(const GltfFile& file, const std::map<int, SkinPose>& poses, std::vector<Job>& jobs)
+{
+    parallelFor(jobs.size(),
+                [&](size_t i)
+                {
+                    const MeshInstance* const skinned = jobs[i].shape->skinned;
+                    const Status status =
+                        readGeometry(file.model, skinned ? &poses.at(skinned->skin) : nullptr, jobs[i]);
+                    if (!status)
+                        jobs[i].error = status.error();
+                });
+    for (const Job& job : jobs)
+        if (job.error)
+            return Error{job.error->code,
+                         fmt::format("{} (/meshes/{}/primitives/{})", job.error->message, job.shape->mesh, job.number)};
+    return Success{};
 }
 
 /// Makes the normals and tangents that the file leaves out.
@@ -81,31 +178,57 @@ void completeGeometry(const SceneData& scene, Job& job)
         job.generated_tangents = generateTangents(*job.result, scene.texture_uses[normal_map]);
 }
 
-void noteGaps(const GltfFile& file, const std::vector<Job>& jobs, SceneData& scene)
+void noteGaps(const std::vector<Job>& jobs, SceneData& scene)
 {
-    bool morphs = false;
+    uint64_t weightless_vertices = 0;
+    uint64_t without_joints = 0;
     for (const Job& job : jobs)
     {
-        const tinygltf::Primitive& primitive = file.model.meshes[size_t(job.mesh)].primitives[job.primitive];
-        morphs |= !primitive.targets.empty();
         if (!job.result)
             ++scene.counts.dropped_primitives;
         scene.counts.generated_normals += job.generated_normals;
         scene.counts.generated_tangents += job.generated_tangents;
+        weightless_vertices += job.weightless_vertices;
+        without_joints += job.lacks_joints;
     }
     if (scene.counts.dropped_primitives > 0)
         scene.warnings.push_back(
             fmt::format("{} primitives without a surface (points, lines, no positions) are left out",
                         scene.counts.dropped_primitives));
-    if (morphs)
-        scene.warnings.push_back("morph targets are left out: meshes are compiled in their base shape");
+    if (weightless_vertices > 0)
+        scene.warnings.push_back(
+            fmt::format("{} vertices of skinned meshes have no weights; they follow the first joint that they name",
+                        weightless_vertices));
+    if (without_joints > 0)
+        scene.warnings.push_back(fmt::format("{} primitives of skinned meshes have no joints (JOINTS_0); they stand "
+                                             "where their node does",
+                                             without_joints));
+}
+
+/// Moves the primitives out of `jobs`, each shape's in a row.
+void takePrimitives(std::vector<Job>& jobs, std::vector<Shape>& shapes, ImportedScene& imported)
+{
+    for (Shape& shape : shapes)
+        shape.first_primitive = shape.primitive_count = 0;
+    for (Job& job : jobs)
+    {
+        if (!job.result)
+            continue;
+        Shape& shape = shapes[size_t(job.shape - shapes.data())];
+        if (shape.primitive_count++ == 0)
+            shape.first_primitive = imported.primitives.size();
+        imported.primitives.push_back(std::move(*job.result));
+    }
 }
 } // namespace
 
-Result<ImportedScene> importScene(const GltfFile& file)
+Result<ImportedScene> importScene(const GltfFile& file, const ImportChoice& choice)
 {
     const tinygltf::Model& model = file.model;
-    Result<SceneNodes> nodes = walkScene(model);
+    const Result<int> variant = findVariant(model, choice.variant);
+    if (!variant)
+        return variant.error();
+    Result<SceneNodes> nodes = walkScene(model, choice.scene);
     if (!nodes)
         return nodes.error();
     ImportedScene imported;
@@ -117,29 +240,32 @@ Result<ImportedScene> importScene(const GltfFile& file)
     scene.lights = std::move(nodes->lights);
     scene.cameras = std::move(nodes->cameras);
 
-    std::vector<Job> jobs = primitivesInUse(model, nodes->meshes);
-    parallelFor(jobs.size(), [&](size_t i) { readGeometry(model, jobs[i]); });
-    for (const Job& job : jobs)
-        if (job.error)
-            return *job.error;
-    if (const Status status = readMaterials(file, jobs, imported); !status)
+    std::vector<size_t> shape_of_instance;
+    std::vector<Shape> shapes = shapesInUse(nodes->meshes, shape_of_instance);
+    std::vector<Job> jobs = primitivesOf(model, shapes);
+    const Result<std::map<int, SkinPose>> poses = poseSkins(file, shapes);
+    if (!poses)
+        return poses.error();
+    if (const Status status = checkVertexTotal(model, jobs); !status)
+        return status.error();
+    if (const Status status = readAll(file, *poses, jobs); !status)
+        return status.error();
+    if (const Status status = readMaterials(file, *variant, jobs, imported); !status)
         return status.error();
     parallelFor(jobs.size(), [&](size_t i) { completeGeometry(scene, jobs[i]); });
-    noteGaps(file, jobs, scene);
+    noteGaps(jobs, scene);
 
-    std::map<int, ImportedInstance> by_mesh;
-    for (Job& job : jobs)
+    takePrimitives(jobs, shapes, imported);
+    for (size_t i = 0; i < nodes->meshes.size(); ++i)
     {
-        ImportedInstance& range =
-            by_mesh.try_emplace(job.mesh, ImportedInstance{imported.primitives.size(), 0, {}}).first->second;
-        if (!job.result)
-            continue;
-        ++range.primitive_count;
-        imported.primitives.push_back(std::move(*job.result));
+        const Shape& shape = shapes[shape_of_instance[i]];
+        Transform to_world = nodes->meshes[i].to_world;
+        if (shape.skinned != nullptr)
+        {
+            const Vec3d& origin = poses->at(shape.skinned->skin).origin;
+            to_world = Transform{.translation = {origin.x, origin.y, origin.z}};
+        }
+        imported.instances.push_back({shape.first_primitive, shape.primitive_count, to_world});
     }
-    for (const MeshInstance& instance : nodes->meshes)
-        if (const auto range = by_mesh.find(instance.mesh); range != by_mesh.end())
-            imported.instances.push_back(
-                {range->second.first_primitive, range->second.primitive_count, instance.to_world});
     return imported;
 }

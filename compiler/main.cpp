@@ -1,6 +1,7 @@
 // lumicut-compile: the command line.
 #include "compiler/camera_views.h"
 #include "compiler/compile.h"
+#include "compiler/gltf_list.h"
 #include "compiler/linear.h"
 #include "compiler/report.h"
 
@@ -16,6 +17,8 @@ struct Arguments
 {
     std::string input;
     std::string output;
+    std::string scene;
+    std::string variant;
     std::string environment;
     std::string sun;
     std::vector<std::string> views;
@@ -23,6 +26,8 @@ struct Arguments
     std::string compress = "none";
     bool no_default_light = false;
     bool quiet = false;
+    bool list = false;
+    bool json = false;
 };
 
 int fail(const std::string& where, const Error& error)
@@ -35,6 +40,8 @@ void declare(CLI::App& app, Arguments& a)
 {
     app.add_option("scene", a.input, "Scene to compile (.gltf or .glb)")->required();
     app.add_option("-o,--output", a.output, "Package to write (default: the scene's name with .lumi)");
+    app.add_option("--scene", a.scene, "Scene of the file, name or index (default: the file's default)");
+    app.add_option("--variant", a.variant, "Variant of the file's materials (KHR_materials_variants)");
     app.add_option("--env", a.environment, "Environment: equirectangular .exr or .hdr, W/(m^2 sr)");
     app.add_option("--sun", a.sun, "Sun: DX,DY,DZ,LUX; the direction is the way its light travels");
     app.add_option(
@@ -44,6 +51,10 @@ void declare(CLI::App& app, Arguments& a)
     app.add_flag("--no-default-light", a.no_default_light, "Leave a scene without any light dark");
     app.add_option("--report", a.report, "Write what was made as JSON");
     app.add_option("--compress", a.compress, "none, zstd or zstd:LEVEL (1-19)")->capture_default_str();
+    CLI::Option* list = app.add_flag("--list", a.list,
+                                     "Print the scenes, variants, cameras, animations, skins, lights "
+                                     "and materials of the file, and compile nothing");
+    app.add_flag("--json", a.json, "With --list: print JSON")->needs(list);
     app.add_flag("-q,--quiet", a.quiet, "Print errors only");
     app.set_version_flag("--version", "lumicut-compile " LUMICUT_VERSION);
 }
@@ -84,6 +95,10 @@ Result<PunctualLight> parseSun(const std::string& text)
 std::vector<std::string> provenance(const Arguments& a)
 {
     std::vector<std::string> text;
+    if (!a.scene.empty())
+        text.push_back("--scene " + a.scene);
+    if (!a.variant.empty())
+        text.push_back("--variant " + a.variant);
     if (!a.environment.empty())
         text.push_back("--env " + std::filesystem::path(a.environment).filename().string());
     if (!a.sun.empty())
@@ -105,6 +120,8 @@ Result<CompileOptions> toOptions(const Arguments& a)
         a.output.empty() ? std::filesystem::path(a.input).replace_extension(".lumi") : std::filesystem::path(a.output);
     options.default_light = !a.no_default_light;
     options.text = provenance(a);
+    options.scene = a.scene;
+    options.variant = a.variant;
     if (!a.environment.empty())
         options.environment = a.environment;
     const Result<int> level = parseCompression(a.compress);
@@ -129,6 +146,15 @@ Result<CompileOptions> toOptions(const Arguments& a)
         options.progress = [](double seconds, const std::string& line)
         { fmt::print(stderr, "[{:5.2f} s] {}\n", seconds, line); };
     return options;
+}
+
+int printList(const Arguments& a)
+{
+    const auto groups = listGltf(a.input);
+    if (!groups)
+        return fail(a.input, groups.error());
+    fmt::print("{}", a.json ? listJson(*groups, a.input) : listText(*groups));
+    return int(ExitCode::kOk);
 }
 
 Status writeReport(const std::string& path, const std::string& json)
@@ -156,6 +182,8 @@ int main(int argc, char** argv)
             return app.exit(e);
         return fail("lumicut-compile", {ExitCode::kUsage, fmt::format("{} (see --help)", e.what())});
     }
+    if (arguments.list)
+        return printList(arguments);
     const Result<CompileOptions> options = toOptions(arguments);
     if (!options)
         return fail("lumicut-compile", options.error());

@@ -78,6 +78,64 @@ TEST(Accessor, AppliesSparseValuesOverDataAndOverZeros)
     }
 }
 
+/// Makes elements of accessor `accessor` sparse ones.
+template <typename T>
+void replaceSparsely(GltfBuilder& builder, int accessor, const std::vector<uint16_t>& places,
+                     const std::vector<T>& values)
+{
+    const int index_view = builder.view(places.data(), places.size() * sizeof(uint16_t));
+    const int value_view = builder.view(values.data(), values.size() * sizeof(T));
+    builder.json["accessors"][size_t(accessor)]["sparse"] = {
+        {"count", places.size()},
+        {"indices", {{"bufferView", index_view}, {"componentType", 5123}}},
+        {"values", {{"bufferView", value_view}}}};
+}
+
+TEST(Accessor, SparseIndicesReplaceThoseOfTheirViewOrZeros)
+{
+    for (const bool with_data : {true, false})
+    {
+        GltfBuilder builder;
+        const int indices = builder.accessor(std::vector<uint32_t>{0, 9, 9, 2, 9, 0}, "SCALAR", 5125, 6);
+        replaceSparsely(builder, indices, {1, 2, 4}, std::vector<uint32_t>{1, 2, 3});
+        if (!with_data)
+        {
+            replaceSparsely(builder, indices, {1, 2, 3, 4}, std::vector<uint32_t>{1, 2, 2, 3});
+            builder.json["accessors"][size_t(indices)].erase("bufferView");
+        }
+        const int positions = builder.positions({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0});
+        builder.node({{"mesh", builder.mesh({{"attributes", {{"POSITION", positions}}}, {"indices", indices}})}});
+        const auto imported = builder.import();
+        ASSERT_TRUE(imported) << imported.error().message;
+        const std::vector<gpu::uvec3>& triangles = imported->primitives[0].triangles;
+        ASSERT_EQ(triangles.size(), 2u);
+        EXPECT_TRUE(triangles[0].x == 0 && triangles[0].y == 1 && triangles[0].z == 2) << with_data;
+        EXPECT_TRUE(triangles[1].x == 2 && triangles[1].y == 3 && triangles[1].z == 0) << with_data;
+    }
+}
+
+TEST(Accessor, SparsePartsOfIndicesAreChecked)
+{
+    const auto code = [](const std::vector<uint16_t>& places, const char* key, const nlohmann::json& value)
+    {
+        GltfBuilder builder;
+        const int indices = builder.accessor(std::vector<uint32_t>{0, 1, 2}, "SCALAR", 5125, 3);
+        replaceSparsely(builder, indices, places, std::vector<uint32_t>(places.size(), 2));
+        builder.triangle({{"indices", indices}});
+        if (key != nullptr)
+            builder.json["accessors"][0]["sparse"][key] = value;
+        const auto imported = builder.import();
+        return imported ? ExitCode::kOk : imported.error().code;
+    };
+    EXPECT_EQ(code({2}, nullptr, {}), ExitCode::kOk);
+    EXPECT_EQ(code({3}, nullptr, {}), ExitCode::kInvalid);
+    EXPECT_EQ(code({2}, "count", 4), ExitCode::kInvalid);
+    EXPECT_EQ(code({2}, "count", -1), ExitCode::kInvalid);
+    EXPECT_EQ(code({2}, "indices", {{"bufferView", 9}, {"componentType", 5123}}), ExitCode::kInvalid);
+    EXPECT_EQ(code({2}, "indices", {{"bufferView", 1}, {"componentType", 5122}}), ExitCode::kInvalid);
+    EXPECT_EQ(code({2}, "values", {{"bufferView", 2}, {"byteOffset", 1}}), ExitCode::kInvalid);
+}
+
 TEST(Accessor, RefusesWhatReachesOutside)
 {
     const auto refused = [](const char* key, const nlohmann::json& value, const char* list = "accessors")
