@@ -1,6 +1,7 @@
 #include "compiler/flatten.h"
 
 #include "compiler/encode.h"
+#include "compiler/tangents.h"
 #include "format/check.h"
 
 #include <fmt/format.h>

@@ -4,6 +4,7 @@
 #include "compiler/gltf_mesh.h"
 #include "compiler/gltf_variants.h"
 #include "compiler/parallel.h"
+#include "compiler/tangents.h"
 
 #include <fmt/format.h>
 
