@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <iterator>
 
 using nlohmann::json;
@@ -40,6 +41,14 @@ ListedGroup group(const char* name, const json& list)
         for (const json& item : list)
             result.items.push_back({text(item, "name"), text(item, "type")});
     return result;
+}
+
+/// `name` without control characters, which a terminal would obey.
+std::string printable(std::string name)
+{
+    std::replace_if(
+        name.begin(), name.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, '?');
+    return name;
 }
 
 /// As the package will name them: by the node that holds a camera, else by the camera.
@@ -91,8 +100,8 @@ std::string listText(const std::vector<ListedGroup>& groups)
     {
         fmt::format_to(out, "{:<10} {}\n", group.name, group.items.size());
         for (size_t i = 0; i < group.items.size(); ++i)
-            fmt::format_to(out, "  {:>3}  \"{}\"{}{}\n", i, group.items[i].name, group.items[i].kind.empty() ? "" : " ",
-                           group.items[i].kind);
+            fmt::format_to(out, "  {:>3}  \"{}\"{}{}\n", i, printable(group.items[i].name),
+                           group.items[i].kind.empty() ? "" : " ", printable(group.items[i].kind));
     }
     return result;
 }

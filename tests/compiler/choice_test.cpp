@@ -109,7 +109,9 @@ TEST(Choice, TheListNamesWhatTheFileHolds)
     builder.json["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 0.1}}}},
                                {{"type", "orthographic"}, {"name", "plan"}}};
     builder.node({{"name", "door"}, {"camera", 0}});
-    builder.json["animations"] = {{{"name", "open"}}, nlohmann::json::object()};
+    builder.json["animations"] = {{{"name", "op\x1b"
+                                            "en"}},
+                                  nlohmann::json::object()};
     builder.json["skins"] = {{{"joints", {0}}}};
     builder.json["extensions"]["KHR_lights_punctual"]["lights"] = {{{"name", "sun"}, {"type", "directional"}}};
     builder.json["buffers"] = {{{"byteLength", 4}, {"uri", "not there.bin"}}}; // and is not needed
@@ -121,7 +123,7 @@ TEST(Choice, TheListNamesWhatTheFileHolds)
     EXPECT_EQ(listText(*groups), "scenes     2\n    0  \"day\" default\n    1  \"night\"\n"
                                  "variants   3\n    0  \"as made\"\n    1  \"worn\"\n    2  \"new\"\n"
                                  "cameras    2\n    0  \"door\" perspective\n    1  \"plan\" orthographic\n"
-                                 "animations 2\n    0  \"open\"\n    1  \"\"\n"
+                                 "animations 2\n    0  \"op?en\"\n    1  \"\"\n"
                                  "skins      1\n    0  \"\"\n"
                                  "lights     1\n    0  \"sun\" directional\n"
                                  "materials  2\n    0  \"plain\"\n    1  \"red\"\n");

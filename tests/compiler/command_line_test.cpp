@@ -55,6 +55,22 @@ TEST_F(CommandLine, CompilesBesideTheInputByDefault)
     EXPECT_EQ(r.output.find('\x1b'), std::string::npos);
 }
 
+TEST_F(CommandLine, ListPrintsWhatTheFileOffersAndCompilesNothing)
+{
+    const ProgramRun text = run("--list " + scene());
+    EXPECT_EQ(text.code, 0) << text.output;
+    EXPECT_TRUE(text.output.starts_with("scenes     1\n")) << text.output;
+    const ProgramRun json = run("--list --json " + scene());
+    EXPECT_EQ(json.code, 0) << json.output;
+    EXPECT_TRUE(json.output.starts_with("{")) << json.output;
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "scene.lumi"));
+    EXPECT_EQ(run("--json " + scene()).code, 1);
+    EXPECT_EQ(run("--list " + path("gone.gltf")).code, 2);
+    EXPECT_EQ(run(scene() + " --variant blue").code, 1);
+    EXPECT_EQ(run(scene() + " --scene 1").code, 1);
+    EXPECT_EQ(run(scene() + " --scene 0").code, 0);
+}
+
 TEST_F(CommandLine, QuietPrintsNothing)
 {
     const ProgramRun r = run(scene() + " -q");

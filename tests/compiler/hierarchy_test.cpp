@@ -145,7 +145,8 @@ TEST(Hierarchy, MatricesMayBeAffineButForRoundingAndNotProjective)
         EXPECT_NEAR(seen->x, 6, 1e-5);
     }
     EXPECT_NEAR(place({0, 0, 0, 2}).value_or(gpu::vec3{}).x, 3, 1e-6); // a scale by one half
-    for (const std::vector<double>& row : {std::vector<double>{0, 0, -1, 0}, {0.1, 0, 0, 1}, {0, 0, 0, 0}, {0, 0.01, 0, 1}})
+    for (const std::vector<double>& row :
+         {std::vector<double>{0, 0, -1, 0}, {0.1, 0, 0, 1}, {0, 0, 0, 0}, {0, 0.01, 0, 1}})
         EXPECT_FALSE(place(row)) << row[0] << " " << row[3];
 }
 
