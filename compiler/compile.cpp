@@ -206,10 +206,11 @@ Result<CompileReport> runPipeline(const CompileOptions& options)
     const Bvh bvh = buildBvh(scene.mesh, triangleFlags(scene));
     watch.stage("bvh", fmt::format("{} nodes, SAH cost {:.1f}, depth {}", bvh.nodes.size(), bvh.sah_cost, bvh.depth));
 
-    const TexturePages textures = buildTexturePages(scene.images, scene.texture_uses);
-    if (textures.resized > 0)
-        scene.warnings.push_back(fmt::format("{} images were resized so that {} texture pages suffice",
-                                             textures.resized, gpu::kTexturePageCount));
+    const TexturePages textures =
+        buildTexturePages(scene.images, scene.texture_uses, scene.materials, options.textures);
+    if (textures.halved > 0)
+        scene.warnings.push_back(fmt::format("{} very large images were halved so that {} texture pages suffice",
+                                             textures.halved, gpu::kTexturePageCount));
     watch.stage("textures", fmt::format("{} images, {} pages", scene.images.size(), textures.pages.size()));
 
     report.meta = makeMeta(options, scene, bvh, lights, textures, sky);

@@ -1,6 +1,7 @@
 // The compiler's pipeline: one glTF scene in, one package out.
 #pragma once
 #include "compiler/scene_data.h"
+#include "compiler/texture_pages.h"
 #include "format/package_generated.h"
 #include "format/package_write.h"
 #include "format/result.h"
@@ -20,6 +21,7 @@ struct CompileOptions
     std::vector<CameraView> views{}; // in the file's coordinates; come before its own cameras
     bool default_light = true;       // give a scene without any light a sky and a sun
     int zstd_level = 0;              // 0: no compression
+    TextureCompression textures = TextureCompression::kBlocks;
     std::vector<std::string> text{}; // the options as given, for the package's provenance
     std::function<void(double seconds, const std::string& line)> progress{}; // after each stage; may be empty
 };

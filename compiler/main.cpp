@@ -21,6 +21,7 @@ struct Arguments
     std::vector<std::string> views;
     std::string report;
     std::string compress = "none";
+    std::string textures = "bc";
     bool no_default_light = false;
     bool quiet = false;
 };
@@ -44,6 +45,9 @@ void declare(CLI::App& app, Arguments& a)
     app.add_flag("--no-default-light", a.no_default_light, "Leave a scene without any light dark");
     app.add_option("--report", a.report, "Write what was made as JSON");
     app.add_option("--compress", a.compress, "none, zstd or zstd:LEVEL (1-19)")->capture_default_str();
+    app.add_option("--textures", a.textures, "bc: block-compressed (BC7, BC5, BC4); raw: RGBA8")
+        ->check(CLI::IsMember({"bc", "raw"}))
+        ->capture_default_str();
     app.add_flag("-q,--quiet", a.quiet, "Print errors only");
     app.set_version_flag("--version", "lumicut-compile " LUMICUT_VERSION);
 }
@@ -94,6 +98,8 @@ std::vector<std::string> provenance(const Arguments& a)
         text.push_back("--no-default-light");
     if (a.compress != "none")
         text.push_back("--compress " + a.compress);
+    if (a.textures != "bc")
+        text.push_back("--textures " + a.textures);
     return text;
 }
 
@@ -111,6 +117,7 @@ Result<CompileOptions> toOptions(const Arguments& a)
     if (!level)
         return level.error();
     options.zstd_level = *level;
+    options.textures = a.textures == "raw" ? TextureCompression::kRaw : TextureCompression::kBlocks;
     if (!a.sun.empty())
     {
         const Result<PunctualLight> sun = parseSun(a.sun);

@@ -50,7 +50,8 @@ std::unique_ptr<fb::CameraT> camera(const CameraView& view)
 std::unique_ptr<fb::TexturePageT> texturePage(const TexturePage& page)
 {
     auto p = std::make_unique<fb::TexturePageT>();
-    p->encoding = page.srgb ? fb::TextureEncoding::Rgba8Srgb : fb::TextureEncoding::Rgba8Unorm;
+    p->encoding = page.encoding;
+    p->tiled = page.tiled;
     p->width = page.width;
     p->height = page.height;
     p->layers = page.layers;

@@ -97,7 +97,9 @@ std::string reportJson(const CompileReport& report, const CompileOptions& option
     json["images"] = report.images;
     json["texture_pages"] = ordered_json::array();
     for (const auto& page : report.meta.texture_pages)
-        json["texture_pages"].push_back({{"srgb", page->encoding == lumicut::fb::TextureEncoding::Rgba8Srgb},
+        json["texture_pages"].push_back({{"encoding", lumicut::fb::EnumNameTextureEncoding(page->encoding)},
+                                         {"srgb", package::isSrgb(page->encoding)},
+                                         {"tiled", page->tiled},
                                          {"width", page->width},
                                          {"height", page->height},
                                          {"layers", page->layers},

@@ -16,6 +16,7 @@ struct TextureImage
     uint32_t height = 0;
     bool srgb = false;           // base colour, emissive, specular colour
     std::vector<uint8_t> texels; // [4 * width * height]
+    std::vector<uint16_t> deep{}; // the same in 16 bits where the file has more than 8, else empty
 };
 
 /// One use of a texture by a material; becomes a gpu::TextureRef once images have found their page and layer.

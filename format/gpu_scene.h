@@ -112,24 +112,28 @@ GPU_OFFSET(Material, emissive_texture, 96);
 
 GPU_CONST float kSmoothRoughness = 0.03; // below it a specular lobe is a perfect mirror or a perfect refraction
 
-GPU_CONST uint kTexturePageCount = 16u; // array textures a scene may use: one per size and encoding
+GPU_CONST uint kTexturePageCount = 16u; // array textures a scene may use: one per size and encoding, or many sizes in tiles
 
-// TextureRef.sampling: bits 0-1 wrap u, bits 2-3 wrap v, bit 4 nearest, bit 5 use TEXCOORD_1
+// TextureRef.sampling: bits 0-1 wrap u, bits 2-3 wrap v, bit 4 nearest, bit 5 use TEXCOORD_1, bit 6 tile, bit 7 x and y only
 GPU_CONST uint kWrapRepeat = 0u;
 GPU_CONST uint kWrapClamp = 1u;
 GPU_CONST uint kWrapMirror = 2u;
 GPU_CONST uint kSampleNearest = 16u;
 GPU_CONST uint kSampleUv1 = 32u;
+GPU_CONST uint kSampleTile = 64u;     // a tile of a tiled page (texture_tile.h), else a whole layer
+GPU_CONST uint kSampleNormalXy = 128u; // a unit vector of which only x and y are stored; z >= 0
 
 struct TextureRef // one use of a texture: which layer of which page, and how
 {
     uint page;     // < kTexturePageCount
     uint layer;
     uint sampling;
+    uint origin;   // of the tile, texels: x in bits 0..15, y in bits 16..31; multiples of 4; 0 for a whole layer
+    uint size;     // of level 0, texels: width in bits 0..15, height in bits 16..31
     vec3 u_row;    // u' = dot(u_row, vec3(u, v, 1)): KHR_texture_transform
     vec3 v_row;
 };
-GPU_SIZE(TextureRef, 36);
+GPU_SIZE(TextureRef, 44);
 
 // ---- Lights --------------------------------------------------------------------------------------------------------
 
@@ -198,6 +202,7 @@ GPU_CONST uint kFeatureSpecular = 2048u;      // materials with any specular ref
 GPU_CONST uint kFeatureBaseColorMaps = 4096u;
 GPU_CONST uint kFeatureSecondUv = 8192u;      // textures that use TEXCOORD_1
 GPU_CONST uint kFeatureVertexColors = 16384u; // vertices that are not white
+GPU_CONST uint kFeatureTiles = 0x40000000u;   // textures in tiled pages
 
 struct SceneInfo // uniform block: what every kernel may need to know of the scene
 {

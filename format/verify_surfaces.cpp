@@ -1,5 +1,8 @@
 // Triangles, vertices, materials and texture references.
 #include "format/package_verify.h"
+#include "format/texture_tile.h"
+
+#include <bit>
 
 namespace package
 {
@@ -8,6 +11,24 @@ namespace
 bool isFiniteHalf(uint32_t bits)
 {
     return (bits & 0x7c00u) != 0x7c00u;
+}
+
+/// A whole layer of a plain page, or a tile with all its levels inside a tiled one.
+bool liesInPage(const gpu::TextureRef& t, const lumicut::fb::TexturePage& page)
+{
+    const uint32_t x = t.origin & 0xffff, y = t.origin >> 16, width = t.size & 0xffff, height = t.size >> 16;
+    if (page.tiled() != ((t.sampling & gpu::kSampleTile) != 0))
+        return false;
+    if (!page.tiled())
+        return t.origin == 0 && width == page.width() && height == page.height();
+    if (x % 4 != 0 || y % 4 != 0 || width == 0 || height == 0)
+        return false;
+    const auto levels = uint32_t(std::bit_width(std::max(width, height)));
+    for (uint32_t level = 0; level < levels; ++level)
+        if (gpu::tileLevelX(x, width, level) + gpu::tileSide(gpu::levelSide(width, level)) > page.width() ||
+            gpu::tileLevelY(y, height, level) + gpu::tileSide(gpu::levelSide(height, level)) > page.height())
+            return false;
+    return true;
 }
 
 /// Factors are as glTF bounds them; what it leaves open need only be finite.
@@ -106,8 +127,10 @@ Status verifyTextureRefs(const Contents& contents)
             return invalid("chunk TREF: texture {} refers to layer {} of page {}, which has {}", i, t.layer, t.page,
                            pages.Get(t.page)->layers());
         if ((t.sampling & 3) > gpu::kWrapMirror || (t.sampling >> 2 & 3) > gpu::kWrapMirror ||
-            t.sampling >= 2 * gpu::kSampleUv1)
+            t.sampling >= 2 * gpu::kSampleNormalXy)
             return invalid("chunk TREF: texture {} has unknown sampling bits ({:#x})", i, t.sampling);
+        if (!liesInPage(t, *pages.Get(t.page)))
+            return invalid("chunk TREF: texture {} is not where page {} holds textures", i, t.page);
         if (!isFinite(t.u_row) || !isFinite(t.v_row))
             return invalid("chunk TREF: texture {} has a coordinate transform that is not finite", i);
     }

@@ -1,5 +1,6 @@
 #include "runtime/scene_gpu.h"
 
+#include "runtime/texture_pages.h"
 #include "shaders/gather/harmonics.h"
 #include "shaders/view_scale/view_scale.h"
 
@@ -56,6 +57,8 @@ uint32_t sceneFeatures(const package::Package& package)
     if (std::ranges::any_of(package.textureRefs(),
                             [](const gpu::TextureRef& ref) { return (ref.sampling & gpu::kSampleUv1) != 0; }))
         features |= gpu::kFeatureSecondUv;
+    if (std::ranges::any_of(*package.meta().texture_pages(), [](const auto* page) { return page->tiled(); }))
+        features |= gpu::kFeatureTiles;
     if (std::ranges::any_of(package.vertexAttributes(),
                             [](const gpu::VertexAttributes& v) { return v.color.x != kWhite || v.color.y != kWhite; }))
         features |= gpu::kFeatureVertexColors;
@@ -144,24 +147,15 @@ void SceneGpu::setLight(Recorder& rec, uint32_t index, const gpu::Light& light)
 void SceneGpu::createImages(const package::Package& package)
 {
     constexpr std::array<uint32_t, 4> kWhite{~0u, ~0u, ~0u, ~0u};
-    const auto& pages = *package.meta().texture_pages();
+    const uint32_t page_count = package.meta().texture_pages()->size();
     for (uint32_t p = 0; p < gpu::kTexturePageCount; ++p)
     {
-        if (p >= pages.size())
+        if (p >= page_count)
         {
             pages_.push_back(device_.uploadImage("scene.no_page", {.array = true}, std::as_bytes(std::span(kWhite).first(1))));
             continue;
         }
-        const auto& page = *pages[p];
-        const bool srgb = page.encoding() == lumicut::fb::TextureEncoding::Rgba8Srgb;
-        pages_.push_back(device_.uploadImage(fmt::format("scene.page_{}", p),
-                                             {.format = srgb ? VK_FORMAT_R8G8B8A8_SRGB : VK_FORMAT_R8G8B8A8_UNORM,
-                                              .width = page.width(),
-                                              .height = page.height(),
-                                              .layers = page.layers(),
-                                              .levels = page.levels(),
-                                              .array = true},
-                                             package.texturePage(p)));
+        pages_.push_back(uploadTexturePage(device_, package, p));
     }
     if (const auto* environment = package.meta().environment())
         environment_ = device_.uploadImage("scene.environment",

@@ -64,7 +64,7 @@ vec3 mappedNormal(vec3 normal, uvec3 v, vec3 weights, Surface s)
     if (dot(t, t) < 1e-12)
         return normal;
     t = normalize(t);
-    vec3 texel = sampleTexture(loadMaterial(s.material).normal_texture, s.uv0, s.uv1, s.footprints).xyz * 2.0 - 1.0;
+    vec3 texel = sampleNormal(loadMaterial(s.material).normal_texture, s.uv0, s.uv1, s.footprints);
     texel.xy *= loadMaterial(s.material).normal_scale;
     vec3 bent = texel.x * t + texel.y * tangent.w * cross(normal, t) + texel.z * normal;
     return dot(bent, bent) > 1e-12 ? normalize(bent) : normal;

@@ -53,6 +53,7 @@ Json texturePages(const lumicut::fb::Meta& meta)
     Json json = Json::array();
     for (const lumicut::fb::TexturePage* page : *meta.texture_pages())
         json.push_back({{"encoding", lumicut::fb::EnumNameTextureEncoding(page->encoding())},
+                        {"tiled", page->tiled()},
                         {"width", page->width()},
                         {"height", page->height()},
                         {"layers", page->layers()},
@@ -182,8 +183,8 @@ void printTables(const package::Package& package)
 {
     const lumicut::fb::Meta& meta = package.meta();
     for (const lumicut::fb::TexturePage* page : *meta.texture_pages())
-        fmt::print("texture page {} layers of {} x {}, {} levels, {}\n", page->layers(), page->width(), page->height(),
-                   page->levels(), lumicut::fb::EnumNameTextureEncoding(page->encoding()));
+        fmt::print("texture page {} layers of {} x {}, {} levels, {}{}\n", page->layers(), page->width(), page->height(),
+                   page->levels(), lumicut::fb::EnumNameTextureEncoding(page->encoding()), page->tiled() ? ", tiles" : "");
     for (const package::ChunkEntry& entry : package.chunks())
         fmt::print("chunk        {} {:<2} {:>12} bytes{}\n", package::chunkName(entry.id), entry.index, entry.raw_bytes,
                    entry.codec == package::Codec::kZstd ? fmt::format(", {} compressed", entry.stored_bytes) : "");
