@@ -459,7 +459,7 @@ Image Device::uploadImage(std::string_view name, const ImageShape& shape, std::s
         .arrayLayers = shape.layers,
         .samples = VK_SAMPLE_COUNT_1_BIT,
         .tiling = VK_IMAGE_TILING_OPTIMAL,
-        .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT,
+        .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT, // tests read back
     };
     vulkanCheck(vkCreateImage(device_, &info, nullptr, &image.image_));
     VkMemoryRequirements needs;

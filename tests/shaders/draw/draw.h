@@ -1,4 +1,4 @@
-// Draws from samplers, one a thread. Shared by tests/shaders/draw/*.comp and tests/stages/*.cpp.
+// Draws from samplers, and what textures show, one a thread. Shared by tests/shaders/draw/*.comp and tests/stages/*.cpp.
 #ifndef TESTS_SHADERS_DRAW_H
 #define TESTS_SHADERS_DRAW_H
 #include "shaders/photons/photons.h"
@@ -39,6 +39,14 @@ struct DirectionDraw
     float pdf;      // that the sampler gives, per steradian; 0: nothing was drawn
 };
 GPU_SIZE(DirectionDraw, 16);
+
+struct TextureDrawParams
+{
+    uint count;
+    uint texture; // index into TextureRefs
+    uint normal;  // 1: as a normal map, -1 to 1
+};
+GPU_SIZE(TextureDrawParams, 12);
 
 struct LightDraw
 {
