@@ -10,7 +10,7 @@
 
 namespace
 {
-constexpr std::array<std::string_view, 14> kHonoured{
+constexpr std::array<std::string_view, 15> kHonoured{
     "EXT_mesh_gpu_instancing",
     "EXT_texture_webp",
     "KHR_draco_mesh_compression",
@@ -24,6 +24,7 @@ constexpr std::array<std::string_view, 14> kHonoured{
     "KHR_materials_volume",
     "KHR_mesh_quantization",
     "KHR_node_visibility",
+    "KHR_texture_basisu",
     "KHR_texture_transform",
 };
 // Leaving these out keeps the picture as its author meant it to be without a choice of the user.
@@ -54,10 +55,6 @@ Result<std::set<std::string>> names(const nlohmann::json& document, const char* 
 
 std::string refusal(const std::string& name)
 {
-    if (name == "KHR_texture_basisu")
-        return "its textures are there as KTX2 (Basis Universal) only, which is not supported; export them as PNG, "
-               "JPEG "
-               "or WebP (required extension KHR_texture_basisu)";
     if (name == "EXT_meshopt_compression" || name == "KHR_meshopt_compression")
         return fmt::format("its geometry is meshopt-compressed, which is not supported; export it uncompressed or with "
                            "Draco (required extension {})",

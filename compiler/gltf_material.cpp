@@ -113,12 +113,9 @@ private:
         const auto webp = textures[size_t(texture)].extensions.find("EXT_texture_webp");
         if (webp != textures[size_t(texture)].extensions.end() && webp->second.Get("source").IsInt())
             source = webp->second.Get("source").GetNumberAsInt();
-        if (source < 0 && textures[size_t(texture)].extensions.contains("KHR_texture_basisu"))
-            return fail(
-                ExitCode::kUnsupported,
-                fmt::format("a texture is there as KTX2 (Basis Universal) only, which is not supported; export it as "
-                            "PNG, JPEG or WebP (/textures/{})",
-                            texture));
+        const auto ktx2 = textures[size_t(texture)].extensions.find("KHR_texture_basisu");
+        if (source < 0 && ktx2 != textures[size_t(texture)].extensions.end() && ktx2->second.Get("source").IsInt())
+            source = ktx2->second.Get("source").GetNumberAsInt();
         if (source == -1) // allowed: an extension that is not honoured may hold it
             return -1;
         if (source < 0 || size_t(source) >= file_.images.size())

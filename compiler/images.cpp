@@ -1,5 +1,6 @@
 #include "compiler/images.h"
 
+#include "compiler/ktx2.h"
 #include "compiler/parallel.h"
 
 #include <fmt/format.h>
@@ -8,6 +9,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -61,6 +63,22 @@ Status decodeWebp(const ByteView& bytes, const GltfImage& image, std::atomic<uin
     return Success{};
 }
 
+Status decodePng16(const ByteView& bytes, const GltfImage& image, TextureImage& out)
+{
+    int width = 0;
+    int height = 0;
+    int channels = 0;
+    const std::unique_ptr<stbi_us, decltype(&stbi_image_free)> decoded(
+        stbi_load_16_from_memory(bytes.data, int(bytes.bytes), &width, &height, &channels, 4), &stbi_image_free);
+    if (decoded == nullptr)
+        return undecodable(image, stbi_failure_reason());
+    out.deep.assign(decoded.get(), decoded.get() + size_t(4) * out.width * out.height);
+    out.texels.resize(out.deep.size());
+    std::transform(out.deep.begin(), out.deep.end(), out.texels.begin(),
+                   [](uint16_t word) { return uint8_t((word + 128u) / 257); });
+    return Success{};
+}
+
 Status decodePngOrJpeg(const ByteView& bytes, const GltfImage& image, std::atomic<uint64_t>& texels, TextureImage& out)
 {
     if (bytes.bytes > size_t(INT32_MAX))
@@ -72,12 +90,49 @@ Status decodePngOrJpeg(const ByteView& bytes, const GltfImage& image, std::atomi
         return undecodable(image, stbi_failure_reason());
     if (Status status = reserve(width, height, image, texels, out); !status)
         return status;
+    if (stbi_is_16_bit_from_memory(bytes.data, int(bytes.bytes)) != 0)
+        return decodePng16(bytes, image, out);
     const std::unique_ptr<stbi_uc, decltype(&stbi_image_free)> decoded(
         stbi_load_from_memory(bytes.data, int(bytes.bytes), &width, &height, &channels, 4), &stbi_image_free);
     if (decoded == nullptr)
         return undecodable(image, stbi_failure_reason());
     out.texels.assign(decoded.get(), decoded.get() + size_t(4) * out.width * out.height);
     return Success{};
+}
+
+Status decodeKtx2File(const ByteView& bytes, const GltfImage& image, std::atomic<uint64_t>& texels, TextureImage& out)
+{
+    bool refused = false;
+    Result<Ktx2Image> decoded = decodeKtx2(std::as_bytes(std::span(bytes.data, bytes.bytes)),
+                                           [&](uint32_t width, uint32_t height)
+                                           {
+                                               Status status = reserve(int(std::min(width, kMaxSide + 1)),
+                                                                       int(std::min(height, kMaxSide + 1)), image, texels, out);
+                                               refused = !status;
+                                               return status;
+                                           });
+    if (!decoded)
+        return refused ? decoded.error()
+                       : Error{decoded.error().code, undecodable(image, decoded.error().message).message};
+    out.texels = std::move(decoded->texels);
+    out.deep = std::move(decoded->deep);
+    out.linear_light = decoded->linear_light;
+    return Success{};
+}
+
+/// Colours that a file holds as light take the encoding that colour textures have.
+void encodeLight(TextureImage& image)
+{
+    for (size_t i = 0; i < image.deep.size(); ++i)
+    {
+        if (i % 4 == 3)
+            continue;
+        const double l = image.deep[i] / 65535.0;
+        const double s = l <= 0.0031308 ? l * 12.92 : 1.055 * std::pow(l, 1 / 2.4) - 0.055;
+        image.deep[i] = uint16_t(std::lround(s * 65535));
+        image.texels[i] = uint8_t(std::lround(s * 255));
+    }
+    image.linear_light = false;
 }
 
 Result<TextureImage> decode(const GltfFile& file, const GltfImage& image, std::atomic<uint64_t>& texels)
@@ -90,15 +145,16 @@ Result<TextureImage> decode(const GltfFile& file, const GltfImage& image, std::a
     const std::string_view start(reinterpret_cast<const char*>(bytes->data), std::min<size_t>(bytes->bytes, 16));
     TextureImage out;
     out.name = image.name;
-    if (start.starts_with("\xABKTX 20"))
-        return Error{ExitCode::kUnsupported,
-                     fmt::format("texture \"{}\" is a KTX2 file, which is not supported; export it as "
-                                 "PNG, JPEG or WebP",
-                                 image.name.substr(0, 200))};
+    if (isKtx2(std::as_bytes(std::span(bytes->data, bytes->bytes))))
+    {
+        if (const Status status = decodeKtx2File(*bytes, image, texels, out); !status)
+            return status.error();
+        return out;
+    }
     const bool webp = start.size() >= 12 && start.starts_with("RIFF") && start.substr(8, 4) == "WEBP";
     const bool png_or_jpeg = start.starts_with("\x89PNG") || start.starts_with("\xFF\xD8");
     if (!webp && !png_or_jpeg)
-        return undecodable(image, "it is neither PNG, JPEG nor WebP");
+        return undecodable(image, "it is neither PNG, JPEG, WebP nor KTX2");
     const Status status = webp ? decodeWebp(*bytes, image, texels, out) : decodePngOrJpeg(*bytes, image, texels, out);
     if (!status)
         return status.error();
@@ -131,6 +187,11 @@ Result<std::vector<TextureImage>> decodeImages(const GltfFile& file, std::span<c
             return decoded[i]->error();
         images.push_back(first == i ? std::move(**decoded[i]) : images[first]);
         images.back().srgb = requests[i].srgb;
+    }
+    for (TextureImage& image : images) // only now: other requests may have been copied from it
+    {
+        if (image.srgb && image.linear_light)
+            encodeLight(image);
     }
     return images;
 }

@@ -1,4 +1,4 @@
-// Decodes the images of a glTF file: PNG, JPEG and WebP to RGBA8.
+// Decodes the images of a glTF file: PNG, JPEG, WebP and KTX2 to RGBA8, or 16 bits where they have more than 8.
 #pragma once
 #include "compiler/gltf_file.h"
 #include "compiler/scene_data.h"

@@ -17,6 +17,7 @@ struct TextureImage
     bool srgb = false;           // base colour, emissive, specular colour
     std::vector<uint8_t> texels; // [4 * width * height]
     std::vector<uint16_t> deep{}; // the same in 16 bits where the file has more than 8, else empty
+    bool linear_light = false;     // colours are light, in spite of what materials want; until decodeImages() returns
 };
 
 /// One use of a texture by a material; becomes a gpu::TextureRef once images have found their page and layer.

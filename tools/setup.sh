@@ -12,7 +12,7 @@ packages=(
     # package format
     flatbuffers-compiler libflatbuffers-dev libxxhash-dev libzstd-dev
     # compiler
-    libdraco-dev libembree-dev libopenmesh-dev libstb-dev libtinygltf-dev libwebp-dev nlohmann-json3-dev
+    libdraco-dev libembree-dev libopenmesh-dev libstb-dev libtinygltf-dev libwebp-dev nlohmann-json3-dev zlib1g-dev
     # player
     libglfw3-dev libimgui-dev libvulkan-dev mesa-vulkan-drivers
     # tools, and what several programs share
