@@ -11,6 +11,27 @@
 
 namespace
 {
+/// 2 layers of 4 x 4, 2 x 2 and 1 x 1 texels: a block each of 16 bytes take 96.
+void makeBlocks(SamplePackage& s, size_t bytes)
+{
+    s.meta.texture_pages[0]->encoding = lumicut::fb::TextureEncoding::Bc7Unorm;
+    s.texture_pages[0].resize(bytes);
+}
+
+/// A page of 32 x 16 texels with two tiles of 4 x 4: with borders and levels 12 x 8. @param x of the second
+void makeTiles(SamplePackage& s, uint32_t x)
+{
+    lumicut::fb::TexturePageT& page = *s.meta.texture_pages[0];
+    page.encoding = lumicut::fb::TextureEncoding::Bc4Unorm;
+    page.tiled = true;
+    page.width = 32, page.height = 16, page.layers = page.levels = 1;
+    s.texture_pages[0].resize(8 * 4 * 8);
+    s.texture_refs[0].sampling = gpu::kSampleTile;
+    s.texture_refs[1].sampling = gpu::kSampleTile | gpu::kSampleUv1;
+    s.texture_refs[1].layer = 0;
+    s.texture_refs[1].origin = x;
+}
+
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInf = std::numeric_limits<float>::infinity();
 
@@ -62,7 +83,15 @@ const ContentCase kContentCases[] = {
     {"TexturePage", "chunk TREF: texture 1 refers to page 1", [](auto& s) { s.texture_refs[1].page = 1; }},
     {"TextureLayer", "chunk TREF: texture 1 refers to layer 2", [](auto& s) { s.texture_refs[1].layer = 2; }},
     {"SamplingWrap", "chunk TREF: texture 0 has unknown sampling", [](auto& s) { s.texture_refs[0].sampling = 3; }},
-    {"SamplingBits", "chunk TREF: texture 0 has unknown sampling", [](auto& s) { s.texture_refs[0].sampling = 64; }},
+    {"SamplingBits", "chunk TREF: texture 0 has unknown sampling", [](auto& s) { s.texture_refs[0].sampling = 256; }},
+    {"TextureSize", "chunk TREF: texture 0 is not where page 0", [](auto& s) { s.texture_refs[0].size = 4 | 5 << 16; }},
+    {"TextureOrigin", "chunk TREF: texture 0 is not where page 0", [](auto& s) { s.texture_refs[0].origin = 4; }},
+    {"TileInPlainPage", "chunk TREF: texture 0 is not where page 0", [](auto& s) { s.texture_refs[0].sampling = gpu::kSampleTile; }},
+    {"PageOfBlocksTooLarge", "chunk TEXP 0: 168 bytes, but", [](auto& s) { s.meta.texture_pages[0]->encoding = lumicut::fb::TextureEncoding::Bc7Srgb; }},
+    {"PageOfBlocksTooSmall", "chunk TEXP 0: 95 bytes, but", [](auto& s) { makeBlocks(s, 95); }},
+    {"TiledPageWithLevels", "chunk META: texture page 0 is tiled and has 3", [](auto& s) { s.meta.texture_pages[0]->tiled = true; }},
+    {"TilePastItsPage", "chunk TREF: texture 1 is not where page 0", [](auto& s) { makeTiles(s, 24); }},
+    {"TileBetweenBlocks", "chunk TREF: texture 1 is not where page 0", [](auto& s) { makeTiles(s, 2); }},
     {"TextureTransform", "chunk TREF: texture 0 has a coordinate transform", [](auto& s) { s.texture_refs[0].v_row.z = kInf; }},
     {"PageTooSmall", "chunk TEXP 0: 167 bytes", [](auto& s) { s.texture_pages[0].pop_back(); }},
     {"PageMissing", "chunk TEXP 0: 0 bytes", [](auto& s) { s.texture_pages.clear(); }},

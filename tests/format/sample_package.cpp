@@ -10,6 +10,7 @@
 
 namespace
 {
+constexpr uint32_t kFourByFour = 4 | 4 << 16; // texels
 constexpr float kEmptyLow = std::numeric_limits<float>::max();
 constexpr float kEmptyHigh = std::numeric_limits<float>::lowest();
 
@@ -116,7 +117,7 @@ SamplePackage::SamplePackage()
         triangles.push_back({{3 * i, 3 * i + 1, 3 * i + 2}, i == 1 ? 1 : gpu::kNone});
         vertex_attributes.insert(vertex_attributes.end(), 3, {1, 2, {0, 0}, {1, 1}, {0x3c003c00, 0x3c003c00}});
     }
-    texture_refs = {{0, 0, 0, {1, 0, 0}, {0, 1, 0}}, {0, 1, gpu::kSampleUv1, {1, 0, 0}, {0, 1, 0}}};
+    texture_refs = {{0, 0, 0, 0, kFourByFour, {1, 0, 0}, {0, 1, 0}}, {0, 1, gpu::kSampleUv1, 0, kFourByFour, {1, 0, 0}, {0, 1, 0}}};
     texture_pages = {std::vector<std::byte>((16 + 4 + 1) * 2 * 4, std::byte{0x55})};
     lights = {light(gpu::kLightPoint, 0.25f), light(gpu::kLightTriangle, 0.25f), light(gpu::kLightEnvironment, 0.5f)};
     lights[1].triangle = 1;

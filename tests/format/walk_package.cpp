@@ -1,6 +1,7 @@
 #include "tests/format/walk_package.h"
 
 #include "format/check.h"
+#include "format/texture_encoding.h"
 
 #include <algorithm>
 #include <array>
@@ -24,7 +25,8 @@ double texel(const package::Package& package, uint32_t texture)
     uint64_t offset = 0;
     for (uint32_t level = 0; level < page.levels(); ++level)
     {
-        const uint64_t layer_bytes = 4ull * std::max(1u, page.width() >> level) * std::max(1u, page.height() >> level);
+        const uint64_t layer_bytes = package::levelBytes(page.encoding(), std::max(1u, page.width() >> level),
+                                                         std::max(1u, page.height() >> level));
         const uint64_t last = offset + layer_bytes * (ref.layer + 1) - 1; // its layer's last byte of this level
         check(last < package.texturePage(ref.page).size(), "byte {}", last);
         sum += double(package.texturePage(ref.page)[last]);
