@@ -60,8 +60,8 @@ struct Ends6
         std::array<uint32_t, 4> bits{};
         uint32_t p = 0;
     };
+    Line<N> line; // as decoded; made with the ends, so it stands before them
     End first, second;
-    Line<N> line; // as decoded
 
     static End quantize(const bc7::Color<N>& color, bc7::Color<N>& decoded)
     {

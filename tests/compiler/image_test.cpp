@@ -31,7 +31,10 @@ std::vector<unsigned char> encodePng16(uint32_t width, uint32_t height, const st
     {
         rows.push_back(0); // no filter
         for (uint32_t i = 0; i < 2 * width; ++i)
-            rows.insert(rows.end(), {uint8_t(words[2 * width * y + i] >> 8), uint8_t(words[2 * width * y + i])});
+        {
+            rows.push_back(uint8_t(words[2 * width * y + i] >> 8));
+            rows.push_back(uint8_t(words[2 * width * y + i]));
+        }
     }
     uLongf size = compressBound(uLong(rows.size()));
     std::vector<unsigned char> packed(size);
