@@ -4,6 +4,7 @@
 #include "compiler/build_lights.h"
 #include "compiler/camera_views.h"
 #include "compiler/environment.h"
+#include "compiler/environment_map.h"
 #include "compiler/flatten.h"
 #include "compiler/gltf_material.h"
 #include "compiler/import_gltf.h"
@@ -61,10 +62,12 @@ Status addViewsAndLights(const CompileOptions& options, SceneData& scene)
         scene.lights.push_back(*options.sun);
     if (!options.environment)
         return Success{};
-    Result<EnvironmentImage> environment = loadEnvironment(*options.environment);
+    Result<LoadedEnvironment> environment = loadEnvironment(*options.environment, options.environment_scale);
     if (!environment)
         return environment.error();
-    scene.environment = std::move(*environment);
+    scene.environment = std::move(environment->image);
+    scene.environment->rotation = options.environment_rotation;
+    scene.warnings.insert(scene.warnings.end(), environment->warnings.begin(), environment->warnings.end());
     return Success{};
 }
 

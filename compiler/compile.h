@@ -16,6 +16,8 @@ struct CompileOptions
     std::filesystem::path input;  // .gltf or .glb
     std::filesystem::path output; // .lumi
     std::optional<std::filesystem::path> environment{};
+    float environment_rotation = 0; // radians about +Y, -pi to pi
+    float environment_scale = 1;    // > 0, of its radiance
     std::optional<PunctualLight> sun{};
     std::vector<CameraView> views{}; // in the file's coordinates; come before its own cameras
     bool default_light = true;       // give a scene without any light a sky and a sun

@@ -8,7 +8,9 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <cmath>
 #include <fstream>
+#include <numbers>
 
 namespace
 {
@@ -17,6 +19,8 @@ struct Arguments
     std::string input;
     std::string output;
     std::string environment;
+    std::string environment_rotation;
+    std::string environment_scale;
     std::string sun;
     std::vector<std::string> views;
     std::string report;
@@ -35,7 +39,11 @@ void declare(CLI::App& app, Arguments& a)
 {
     app.add_option("scene", a.input, "Scene to compile (.gltf or .glb)")->required();
     app.add_option("-o,--output", a.output, "Package to write (default: the scene's name with .lumi)");
-    app.add_option("--env", a.environment, "Environment: equirectangular .exr or .hdr, W/(m^2 sr)");
+    auto* env = app.add_option("--env", a.environment, "Environment: equirectangular .exr or .hdr, W/(m^2 sr)");
+    app.add_option("--env-rotate", a.environment_rotation,
+                   "Degrees by which the environment is turned about +Y, counter-clockwise seen from above")
+        ->needs(env);
+    app.add_option("--env-scale", a.environment_scale, "Factor for the environment's radiance")->needs(env);
     app.add_option("--sun", a.sun, "Sun: DX,DY,DZ,LUX; the direction is the way its light travels");
     app.add_option(
            "--view", a.views,
@@ -80,12 +88,39 @@ Result<PunctualLight> parseSun(const std::string& text)
     return sun;
 }
 
+Status parseEnvironment(const Arguments& a, CompileOptions& options)
+{
+    if (!a.environment.empty())
+        options.environment = a.environment;
+    if (!a.environment_rotation.empty())
+    {
+        const Result<std::vector<double>> degrees = parseNumbers(a.environment_rotation, 1);
+        if (!degrees)
+            return Error{ExitCode::kUsage, fmt::format("--env-rotate: {} (DEGREES)", degrees.error().message)};
+        options.environment_rotation = float(std::remainder(degrees->front(), 360.0) * std::numbers::pi / 180);
+    }
+    if (!a.environment_scale.empty())
+    {
+        const Result<std::vector<double>> factor = parseNumbers(a.environment_scale, 1);
+        if (!factor)
+            return Error{ExitCode::kUsage, fmt::format("--env-scale: {} (FACTOR)", factor.error().message)};
+        options.environment_scale = float(factor->front());
+        if (!(options.environment_scale > 0) || !std::isfinite(options.environment_scale))
+            return Error{ExitCode::kUsage, fmt::format("--env-scale \"{}\" is not a positive number", a.environment_scale)};
+    }
+    return Success{};
+}
+
 /// Options that shape the package, in a fixed order; paths without folders.
 std::vector<std::string> provenance(const Arguments& a)
 {
     std::vector<std::string> text;
     if (!a.environment.empty())
         text.push_back("--env " + std::filesystem::path(a.environment).filename().string());
+    if (!a.environment_rotation.empty())
+        text.push_back("--env-rotate " + a.environment_rotation);
+    if (!a.environment_scale.empty())
+        text.push_back("--env-scale " + a.environment_scale);
     if (!a.sun.empty())
         text.push_back("--sun " + a.sun);
     for (const std::string& view : a.views)
@@ -105,8 +140,8 @@ Result<CompileOptions> toOptions(const Arguments& a)
         a.output.empty() ? std::filesystem::path(a.input).replace_extension(".lumi") : std::filesystem::path(a.output);
     options.default_light = !a.no_default_light;
     options.text = provenance(a);
-    if (!a.environment.empty())
-        options.environment = a.environment;
+    if (const Status status = parseEnvironment(a, options); !status)
+        return status.error();
     const Result<int> level = parseCompression(a.compress);
     if (!level)
         return level.error();

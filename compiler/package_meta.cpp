@@ -82,6 +82,7 @@ fb::MetaT makeMeta(const CompileOptions& options, const SceneData& scene, const 
         meta.environment->importance_width = importance->width;
         meta.environment->importance_height = importance->height;
         meta.environment->average_radiance = box(importance->average_radiance);
+        meta.environment->rotation = scene.environment->rotation;
     }
     meta.statistics = statistics(scene, bvh, lights);
     meta.provenance = std::make_unique<fb::ProvenanceT>();

@@ -62,6 +62,7 @@ struct EnvironmentImage
     uint32_t width = 0;
     uint32_t height = 0;
     std::vector<gpu::vec4> texels; // [width * height] W/(m^2 sr), row 0 at +Y, w unused (1)
+    float rotation = 0;            // radians about +Y by which the map is turned, -pi to pi
 };
 
 struct CameraView

@@ -165,8 +165,8 @@ struct AliasEntry // Walker/Vose: pick i uniformly, keep it if a second uniform 
 };
 GPU_SIZE(AliasEntry, 8);
 
-// The environment is an equirectangular map: direction (x,y,z) -> u = 0.5 + atan2(z, x) / 2pi, v = acos(y) / pi,
-// row 0 at +Y. Radiance is bilinearly filtered (u repeats, v clamps). Importance is a coarser grid over the same (u,v):
+// The environment is an equirectangular map: direction (x,y,z) -> u = 0.5 + (atan2(z, x) + rotation) / 2pi, v = acos(y) / pi,
+// row 0 at +Y; rotation is META's, about +Y as a node's would be. Radiance is bilinearly filtered (u repeats, v clamps). Importance is a coarser grid over the same (u,v):
 struct EnvironmentTexel
 {
     float threshold;   // alias table over the texels, row-major
@@ -208,8 +208,9 @@ struct SceneInfo // uniform block: what every kernel may need to know of the sce
     uvec2 environment_importance_size; // texels; 0 without environment
     uint caustic_target_count;
     uint triangle_count;
+    float environment_turn; // by how much of a whole turn the environment is rotated about +Y, -0.5 to 0.5
 };
-GPU_SIZE(SceneInfo, 48);
+GPU_SIZE(SceneInfo, 52);
 
 // ---- Descriptor set 0: the scene, the same for every kernel --------------------------------------------------------
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace
 {
@@ -24,11 +25,13 @@ gpu::SceneInfo sceneInfo(const package::Package& package)
         .environment_importance_size = {},
         .caustic_target_count = uint32_t(package.causticTargets().size()),
         .triangle_count = uint32_t(package.triangles().size()),
+        .environment_turn = 0,
     };
     if (!lights.empty() && lights.back().kind == gpu::kLightEnvironment)
     {
         info.environment_light = uint32_t(lights.size() - 1);
         info.environment_importance_size = {meta.environment()->importance_width(), meta.environment()->importance_height()};
+        info.environment_turn = meta.environment()->rotation() * float(0.5 / std::numbers::pi);
     }
     return info;
 }

@@ -1,6 +1,6 @@
 // lumicut-play as its user meets it: what it says of bad input, what it leaves behind, what it renders.
 #include "tests/tools/run_program.h"
-#include "tools/image/read_exr.h"
+#include "image/read_exr.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -9,7 +9,7 @@
 #include "tests/stages/same_picture.h"
 #include "tests/tools/temporary_folder.h"
 #include "tools/compare/metrics.h"
-#include "tools/image/read_exr.h"
+#include "image/read_exr.h"
 
 #include <nlohmann/json.hpp>
 

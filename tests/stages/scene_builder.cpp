@@ -3,7 +3,7 @@
 #include "compiler/compile.h"
 #include "format/check.h"
 #include "tests/compiler/gltf_builder.h"
-#include "tools/image/write_image.h"
+#include "image/write_image.h"
 
 #include <algorithm>
 #include <array>

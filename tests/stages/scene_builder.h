@@ -1,7 +1,7 @@
 // Tiny scenes whose light is known in closed form, as glTF and compiled to a package by the compiler itself.
 #pragma once
 #include "format/gpu_types.h"
-#include "tools/image/image.h"
+#include "image/image.h"
 
 #include <nlohmann/json.hpp>
 

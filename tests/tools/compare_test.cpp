@@ -1,7 +1,7 @@
 // lumicut-compare as its user meets it: output, exit codes, files.
 #include "tests/tools/random_image.h"
 #include "tests/tools/run_program.h"
-#include "tools/image/write_image.h"
+#include "image/write_image.h"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>

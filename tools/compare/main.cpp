@@ -4,7 +4,7 @@
 #include "tools/compare/picture.h"
 #include "tools/compare/read_images.h"
 #include "tools/compare/welch_command.h"
-#include "tools/image/write_image.h"
+#include "image/write_image.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>

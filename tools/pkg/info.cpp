@@ -136,7 +136,8 @@ Json describe(const package::Package& package)
                                {"height", e->height()},
                                {"importance_width", e->importance_width()},
                                {"importance_height", e->importance_height()},
-                               {"average_radiance", vec(e->average_radiance())}};
+                               {"average_radiance", vec(e->average_radiance())},
+                               {"rotation", e->rotation()}};
     return json;
 }
 
@@ -214,7 +215,8 @@ void printText(const std::filesystem::path& path, const package::Package& packag
     fmt::print("lights       {}{}, {:.4g} W\n", package.lights().size(), kinds, s.total_light_power());
     fmt::print("caustics     {} targets\n", package.causticTargets().size());
     if (const lumicut::fb::Environment* e = meta.environment())
-        fmt::print("environment  {} x {}\n", e->width(), e->height());
+        fmt::print("environment  {} x {}, turned by {:.6g} degrees\n", e->width(), e->height(),
+                   e->rotation() * 180 / std::numbers::pi);
     printCameras(meta);
     printTables(package);
     for (const Json& warning : list(p.warnings()))

@@ -1,7 +1,7 @@
 #include "tools/scenes/gltf_writer.h"
 
 #include "format/check.h"
-#include "tools/image/write_image.h"
+#include "image/write_image.h"
 
 #include <cstring>
 

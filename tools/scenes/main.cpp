@@ -1,5 +1,5 @@
 // lumicut-scenes: writes its scenes as binary glTF files. The same program writes the same bytes.
-#include "tools/image/write_image.h"
+#include "image/write_image.h"
 #include "tools/scenes/scenes.h"
 
 #include <CLI/CLI.hpp>

@@ -1,7 +1,7 @@
 // OpenEXR and PNG out. Needs nothing of the project but result.h, and no library but OpenEXR and stb.
 #pragma once
 #include "format/result.h"
-#include "tools/image/image.h"
+#include "image/image.h"
 
 #include <filesystem>
 #include <span>

@@ -1,4 +1,4 @@
-#include "tools/image/write_image.h"
+#include "image/write_image.h"
 
 #include "format/check.h"
 
