@@ -41,10 +41,11 @@ std::array<double, 3> lookUp(const EnvironmentImage& cube, const Vector3& d)
     const double y = std::clamp((dot(kFaces[face].down, d) / forward + 1) / 2, 0.0, 1.0) * last;
     const double left = std::floor(x), top = std::floor(y);
     std::array<double, 3> sum{};
-    for (const double column : {left, std::min(left + 1, last)})
-        for (const double row : {top, std::min(top + 1, last)})
+    for (const double right : {0.0, 1.0})
+        for (const double down : {0.0, 1.0})
         {
-            const double weight = (column == left ? 1 - (x - left) : x - left) * (row == top ? 1 - (y - top) : y - top);
+            const double weight = (right == 0 ? 1 - (x - left) : x - left) * (down == 0 ? 1 - (y - top) : y - top);
+            const double column = std::min(left + right, last), row = std::min(top + down, last);
             const gpu::vec4& texel = cube.texels[(face * cube.width + size_t(row)) * cube.width + size_t(column)];
             sum[0] += weight * texel.x;
             sum[1] += weight * texel.y;

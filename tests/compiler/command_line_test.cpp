@@ -1,4 +1,5 @@
 #include "compiler/camera_views.h"
+#include "format/package_read.h"
 #include "tests/compiler/gltf_builder.h"
 
 #include <fmt/format.h>
@@ -8,6 +9,8 @@
 
 #include <array>
 #include <cstdio>
+#include <fstream>
+#include <numbers>
 
 namespace
 {
@@ -62,6 +65,27 @@ TEST_F(CommandLine, QuietPrintsNothing)
     EXPECT_EQ(r.output, "");
 }
 
+TEST_F(CommandLine, EnvironmentOptionsAreRecordedAndItsErrorsNameIt)
+{
+    const std::string pixels(4 * 8, char(130));
+    std::ofstream(folder_ / "sky.hdr", std::ios::binary) << "#?RADIANCE\n\n-Y 2 +X 4\n" << pixels;
+    const ProgramRun made = run(scene() + " --env " + path("sky.hdr") + " --env-rotate -450 --env-scale 0.5");
+    ASSERT_EQ(made.code, 0) << made.output;
+    const auto package = package::Package::open(folder_ / "scene.lumi");
+    ASSERT_TRUE(package) << package.error().message;
+    EXPECT_FLOAT_EQ(package->meta().environment()->rotation(), -float(std::numbers::pi) / 2);
+    EXPECT_EQ(package->environmentMap()[3].y, 0.5f * 130 / 64); // 130 x 2^(130 - 136)
+    std::vector<std::string> options;
+    for (const auto* option : *package->meta().provenance()->options())
+        options.push_back(option->str());
+    EXPECT_EQ(options, (std::vector<std::string>{"--env sky.hdr", "--env-rotate -450", "--env-scale 0.5"}));
+
+    std::ofstream(folder_ / "cut.hdr", std::ios::binary) << "#?RADIANCE\n\n-Y 2 +X 4\n" << pixels.substr(1);
+    const ProgramRun refused = run(scene() + " --env " + path("cut.hdr"));
+    EXPECT_EQ(refused.code, 3);
+    EXPECT_TRUE(refused.output.find("cut.hdr: error: the HDR image is damaged in line 2 of 2") != std::string::npos) << refused.output;
+}
+
 TEST_F(CommandLine, VersionAndHelpSucceed)
 {
     EXPECT_EQ(run("--version").output, "lumicut-compile " LUMICUT_VERSION "\n");
@@ -76,6 +100,11 @@ TEST_F(CommandLine, MistakesInArgumentsAreUsageErrors)
                                             scene() + " --sun 1,2,3",
                                             scene() + " --sun 0,0,0,1",
                                             scene() + " --sun 1,2,3,x",
+                                            scene() + " --env-rotate 90",
+                                            scene() + " --env sky.exr --env-rotate north",
+                                            scene() + " --env sky.exr --env-rotate 1e999",
+                                            scene() + " --env sky.exr --env-scale 0",
+                                            scene() + " --env sky.exr --env-scale -1",
                                             scene() + " --view a=1,2",
                                             scene() + " --view a=0,0,0,0,0,0,40",
                                             scene() + " --view a=0,0,1,0,0,0,180",

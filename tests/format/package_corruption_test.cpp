@@ -92,6 +92,8 @@ const ContentCase kContentCases[] = {
     {"EnvironmentNan", "chunk ENVR: texel 3", [](auto& s) { s.environment_map[3].y = kNan; }},
     {"EnvironmentNegative", "chunk ENVR: texel 7", [](auto& s) { s.environment_map[7].z = -1; }},
     {"EnvironmentUndescribed", "chunk ENVR or EIMP is there", [](auto& s) { s.meta.environment.reset(); s.lights[2].kind = gpu::kLightPoint; }},
+    {"EnvironmentRotation", "chunk META: the environment is turned by 3.2 radians", [](auto& s) { s.meta.environment->rotation = 3.2f; }},
+    {"EnvironmentRotationNan", "chunk META: the environment is turned by nan", [](auto& s) { s.meta.environment->rotation = kNan; }},
     {"EnvironmentAverage", "chunk META: the environment's average radiance", [](auto& s) { s.meta.environment->average_radiance.reset(); }},
     {"ImportanceSize", "chunk EIMP: 2 texels, META says 2 x 2", [](auto& s) { s.meta.environment->importance_height = 2; }},
     {"ImportanceAlias", "chunk EIMP: entry 1 has alias 2", [](auto& s) { s.environment_texels[1].alias = 2; }},

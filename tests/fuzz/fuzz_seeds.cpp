@@ -1,30 +1,152 @@
-// Writes the packages that the fuzzer starts from into a folder: plain, compressed, and with all that is optional left
-// out.
+// Writes what the fuzz targets start from into a folder for each: packages, pictures, scenes and settings that are whole
+// and, between them, use most of what the readers know.
+#include "runtime/settings.h"
+#include "tests/compiler/gltf_builder.h"
 #include "tests/format/sample_package.h"
+#include "tests/image/exr_writer.h"
+#include "tests/image/hdr_writer.h"
 
 #include <fmt/format.h>
 
+#include <fstream>
+
 namespace
 {
-bool save(const SamplePackage& sample, const std::filesystem::path& path, int zstd_level)
+namespace fs = std::filesystem;
+
+bool failed = false;
+
+void save(const fs::path& path, const void* data, size_t size)
 {
-    const auto written = sample.write(path, {.zstd_level = zstd_level});
-    if (!written)
-        fmt::print(stderr, "{}: error: {}\n", path.string(), written.error().message);
-    return bool(written);
+    std::ofstream file(path, std::ios::binary);
+    if (!file.write(static_cast<const char*>(data), std::streamsize(size)).flush())
+    {
+        fmt::print(stderr, "{}: error: cannot write the seed\n", path.string());
+        failed = true;
+    }
 }
 
-SamplePackage bare()
+void save(const fs::path& path, const std::vector<std::byte>& bytes)
 {
-    SamplePackage sample;
-    sample.lights.clear();
-    sample.light_aliases.clear();
-    sample.environment_map.clear();
-    sample.environment_texels.clear();
-    sample.meta.environment.reset();
-    sample.caustic_targets.clear();
-    sample.triangles[1].light = gpu::kNone;
-    return sample;
+    save(path, bytes.data(), bytes.size());
+}
+
+void save(const fs::path& path, const SamplePackage& sample, int zstd_level)
+{
+    const auto written = sample.write(path, {.zstd_level = zstd_level});
+    if (written)
+        return;
+    fmt::print(stderr, "{}: error: {}\n", path.string(), written.error().message);
+    failed = true;
+}
+
+/// Plain, compressed, and with all that is optional left out.
+void savePackages(const fs::path& folder)
+{
+    save(folder / "plain.lumi", SamplePackage(), 0);
+    save(folder / "compressed.lumi", SamplePackage(), 3);
+    SamplePackage bare;
+    bare.lights.clear();
+    bare.light_aliases.clear();
+    bare.environment_map.clear();
+    bare.environment_texels.clear();
+    bare.meta.environment.reset();
+    bare.caustic_targets.clear();
+    bare.triangles[1].light = gpu::kNone;
+    save(folder / "bare.lumi", bare, 0);
+}
+
+void saveHdrs(const fs::path& folder)
+{
+    const ImageF image = exactHdrImage(40, 6, 1);
+    save(folder / "flat.hdr", writeHdr(image, {.runs = HdrRuns::kFlat, .magic = "#?RGBE", .orientation = "+Y -X"}));
+    save(folder / "old.hdr", writeHdr(image, {.runs = HdrRuns::kOld, .lines = "EXPOSURE=2\nCOLORCORR=1 2 3\n"}));
+    save(folder / "new.hdr", writeHdr(image, {.lines = "FORMAT=32-bit_rle_xyze\n# text\n", .orientation = "-X +Y"}));
+    save(folder / "primaries.hdr", writeHdr(image, {.lines = "PRIMARIES= 0.708 0.292 0.170 0.797 0.131 0.046 0.3127 0.329\n"}));
+}
+
+void saveExrs(const fs::path& folder)
+{
+    const auto value = [](int x, int y) { return float(x % 3) + 0.5f * float(y); };
+    const Imath::Box2i box = window(0, 0, 12, 8);
+    const ExrPart plain{.data = box, .display = window(2, -3, 12, 20), .channels = rgbChannels(value)};
+    save(folder / "plain.exr", writeExr({plain}));
+    for (const Imf::Compression compression : {Imf::NO_COMPRESSION, Imf::RLE_COMPRESSION, Imf::PIZ_COMPRESSION, Imf::PXR24_COMPRESSION,
+                                               Imf::B44_COMPRESSION, Imf::DWAA_COMPRESSION})
+    {
+        ExrPart part = plain;
+        part.compression = compression;
+        for (ExrChannel& channel : part.channels)
+            channel.half = true;
+        save(folder / fmt::format("compression{}.exr", int(compression)), writeExr({part}));
+    }
+    ExrPart tiled = plain;
+    tiled.tiles = Imf::TileDescription(5, 4, Imf::RIPMAP_LEVELS);
+    tiled.chromaticities = Imf::Chromaticities({0.708f, 0.292f}, {0.17f, 0.797f}, {0.131f, 0.046f}, {0.3f, 0.3f});
+    save(folder / "tiled.exr", writeExr({tiled}));
+    const ExrPart chroma{.data = box,
+                         .display = box,
+                         .channels = {{.name = "a.Y", .value = value}, {.name = "a.RY", .value = value, .sampling = 2}, {.name = "a.BY", .value = value, .sampling = 2}},
+                         .name = "second"};
+    save(folder / "chroma.exr", writeExr({chroma}));
+    ExrPart cube = plain;
+    cube.data = cube.display = window(0, 0, 2, 12);
+    cube.envmap = Imf::ENVMAP_CUBE;
+    save(folder / "cube.exr", writeExr({cube}));
+    const ExrPart deep{.data = box, .display = box, .channels = {{.name = "Z", .value = value}}, .name = "first", .deep = true};
+    save(folder / "parts.exr", writeExr({deep, chroma}));
+}
+
+void saveScenes(const fs::path& folder)
+{
+    GltfBuilder plain;
+    plain.triangle();
+    plain.writeGlb(folder / "plain.glb");
+
+    GltfBuilder rich;
+    const int texture = rich.texture(2, 2, {255, 0, 0, 255, 0, 255, 0, 0, 0, 0, 255, 255, 9, 9, 9, 255});
+    rich.material({{"alphaMode", "MASK"},
+                   {"doubleSided", true},
+                   {"normalTexture", {{"index", texture}}},
+                   {"emissiveFactor", {1, 0.5, 0}},
+                   {"pbrMetallicRoughness", {{"baseColorTexture", {{"index", texture}}}, {"metallicFactor", 0.5}}},
+                   {"extensions", {{"KHR_materials_ior", {{"ior", 1.4}}}, {"KHR_materials_transmission", {{"transmissionFactor", 0.5}}}}}});
+    const int uv = rich.accessor(std::vector<float>{0, 1, 1, 1, 0, 0}, "VEC2", 5126, 3);
+    const int indices = rich.accessor(std::vector<uint16_t>{0, 1, 2}, "SCALAR", 5123, 3);
+    rich.triangle({{"material", 0}, {"indices", indices}, {"attributes", {{"TEXCOORD_0", uv}}}});
+    rich.json["extensionsUsed"] = {"KHR_lights_punctual", "KHR_materials_ior", "KHR_materials_transmission", "EXT_mesh_gpu_instancing"};
+    rich.json["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "spot"}, {"intensity", 5}, {"spot", {{"outerConeAngle", 0.5}}}}};
+    rich.json["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 0.7}, {"znear", 0.1}}}}};
+    rich.json["nodes"][0]["camera"] = 0;
+    rich.json["nodes"][0]["rotation"] = {0, 0.6, 0, 0.8};
+    rich.json["nodes"][0]["extensions"]["KHR_lights_punctual"]["light"] = 0;
+    const int places = rich.accessor(std::vector<float>{0, 0, 0, 5, 0, 0}, "VEC3", 5126, 2);
+    rich.json["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"]["TRANSLATION"] = places;
+    rich.writeGlb(folder / "rich.glb");
+
+    GltfBuilder sparse;
+    const int places_at = sparse.view(std::vector<uint8_t>{0, 2}.data(), 2);
+    const int values = sparse.view(std::vector<float>{1, 2, 3, 4, 5, 6}.data(), 24);
+    sparse.triangle();
+    sparse.json["accessors"][0]["sparse"] = {{"count", 2},
+                                             {"indices", {{"bufferView", places_at}, {"componentType", 5121}}},
+                                             {"values", {{"bufferView", values}}}};
+    sparse.writeGlb(folder / "sparse.glb");
+}
+
+/// Every setting at the ends of its range, and some that are none.
+void saveSettings(const fs::path& folder)
+{
+    for (const char* preset : {"preview", "default", "high"})
+    {
+        std::string text = preset;
+        for (const Knob& knob : knobs())
+            text += fmt::format("\n{}={}\n{}={}", knob.name, knob.choices.empty() ? fmt::format("{}", knob.least) : knob.choices.front().name, knob.name,
+                                knob.choices.empty() ? fmt::format("{}", knob.most) : knob.choices.back().name);
+        save(folder / preset, text.data(), text.size());
+    }
+    const std::string wrong = "default\nphotons.count=-1\nexposure=nan\nexposure=1e999\n=\nterm=\n";
+    save(folder / "wrong", wrong.data(), wrong.size());
 }
 } // namespace
 
@@ -35,10 +157,14 @@ int main(int argc, char** argv)
         fmt::print(stderr, "usage: fuzz_seeds FOLDER\n");
         return int(ExitCode::kUsage);
     }
-    const std::filesystem::path folder = argv[1];
-    std::error_code error;
-    std::filesystem::create_directories(folder, error);
-    const bool saved = save(SamplePackage(), folder / "plain.lumi", 0) &&
-                       save(SamplePackage(), folder / "compressed.lumi", 3) && save(bare(), folder / "bare.lumi", 0);
-    return int(saved ? ExitCode::kOk : ExitCode::kIo);
+    const fs::path folder = argv[1];
+    const std::pair<const char*, void (*)(const fs::path&)> kinds[] = {
+        {"package", savePackages}, {"hdr", saveHdrs}, {"exr", saveExrs}, {"gltf", saveScenes}, {"settings", saveSettings}};
+    for (const auto& [name, saveAll] : kinds)
+    {
+        std::error_code error;
+        fs::create_directories(folder / name, error);
+        saveAll(folder / name);
+    }
+    return int(failed ? ExitCode::kIo : ExitCode::kOk);
 }

@@ -17,6 +17,7 @@ struct SceneBuilder::State
     GltfBuilder gltf;
     std::set<std::string> extensions;
     bool has_environment = false;
+    float environment_rotation = 0;
 };
 
 SceneBuilder::SceneBuilder() : state_(std::make_unique<State>())
@@ -141,11 +142,12 @@ void SceneBuilder::light(const nlohmann::json& light, const nlohmann::json& node
     addRoot(gltf.json, gltf.node(above));
 }
 
-void SceneBuilder::environment(const ImageF& map)
+void SceneBuilder::environment(const ImageF& map, float rotation)
 {
     const Status status = writeExr(state_->folder / "environment.exr", map);
     check(bool(status), "{}", status ? "" : status.error().message);
     state_->has_environment = true;
+    state_->environment_rotation = rotation;
 }
 
 std::filesystem::path SceneBuilder::compile()
@@ -157,6 +159,7 @@ std::filesystem::path SceneBuilder::compile()
     options.default_light = false;
     if (state_->has_environment)
         options.environment = state_->folder / "environment.exr";
+    options.environment_rotation = state_->environment_rotation;
     const auto report = ::compile(options);
     check(bool(report), "{}", report ? "" : report.error().message);
     return options.output;

@@ -1,0 +1,24 @@
+// Whatever is assigned: settings end in an error or within their ranges. Lines are assignments, the first a preset.
+#include "format/check.h"
+#include "runtime/settings.h"
+
+#include <sstream>
+#include <vector>
+
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size)
+{
+    std::istringstream text(std::string(reinterpret_cast<const char*>(data), size));
+    std::string preset;
+    std::getline(text, preset);
+    std::vector<std::string> assignments;
+    for (std::string line; std::getline(text, line);)
+        assignments.push_back(line);
+    if (const Result<Settings> settings = makeSettings(preset, assignments))
+        for (const Knob& knob : knobs())
+        {
+            const double value = std::visit([&](auto member) { return double((*settings).*member); }, knob.member);
+            // Floats round the ends of a range.
+            check(value >= knob.least * (1 - 1e-6) && value <= knob.most * (1 + 1e-6), "{} = {}", knob.name, value);
+        }
+    return 0;
+}
