@@ -79,6 +79,9 @@ Result<LoadedEnvironment> loadEnvironment(const std::filesystem::path& path, flo
     const Result<package::MappedFile> file = package::MappedFile::open(path);
     if (!file)
         return file.error().about(path.string());
-    auto loaded = (suffix == ".exr" ? decodeExrEnvironment : decodeHdrEnvironment)(file->bytes(), path.filename().string(), scale);
-    return loaded ? loaded : loaded.error().about(path.string());
+    Result<LoadedEnvironment> loaded =
+        (suffix == ".exr" ? decodeExrEnvironment : decodeHdrEnvironment)(file->bytes(), path.filename().string(), scale);
+    if (!loaded)
+        return loaded.error().about(path.string());
+    return loaded;
 }

@@ -19,8 +19,8 @@ build/asan/bin/fuzz_seeds "$folder/seeds"
 
 fuzz() {
     mkdir -p "$folder/corpus/$1"
-    if build/asan/bin/fuzz_"$1" -max_total_time="$seconds" -max_len=131072 -timeout=10 -rss_limit_mb=2048 -print_final_stats=1 \
-        -artifact_prefix="$folder/" "$folder/corpus/$1" "$folder/seeds/$1" >"$folder/$1.log" 2>&1; then
+    if build/asan/bin/fuzz_"$1" -max_total_time="$seconds" -max_len=131072 -timeout=10 -rss_limit_mb=2048 -detect_leaks=0 \
+        -print_final_stats=1 -artifact_prefix="$folder/" "$folder/corpus/$1" "$folder/seeds/$1" >"$folder/$1.log" 2>&1; then
         echo "fuzz: $1: $(sed -n 's/^stat::number_of_executed_units: *//p' "$folder/$1.log") runs, nothing found"
     else
         echo "fuzz: $1 failed; $folder/$1.log ends with:" >&2

@@ -1,7 +1,7 @@
 // Writes what the fuzz targets start from into a folder for each: packages, pictures, scenes and settings that are whole
 // and, between them, use most of what the readers know.
+#include "image/write_image.h"
 #include "runtime/settings.h"
-#include "tests/compiler/gltf_builder.h"
 #include "tests/format/sample_package.h"
 #include "tests/image/exr_writer.h"
 #include "tests/image/hdr_writer.h"
@@ -97,41 +97,64 @@ void saveExrs(const fs::path& folder)
     save(folder / "parts.exr", writeExr({deep, chroma}));
 }
 
+/// A binary glTF file of this JSON, in which %BYTES% stands for the size of `buffer`.
+void saveGlb(const fs::path& path, std::string json, const std::string& buffer)
+{
+    const std::string_view mark = "%BYTES%";
+    json.replace(json.find(mark), mark.size(), std::to_string(buffer.size()));
+    json.resize((json.size() + 3) / 4 * 4, ' ');
+    const auto word = [](uint32_t value) { return std::string(reinterpret_cast<const char*>(&value), sizeof(value)); };
+    const std::string chunks = word(uint32_t(json.size())) + "JSON" + json + word(uint32_t(buffer.size())) + std::string("BIN\0", 4) + buffer;
+    const std::string file = "glTF" + word(2) + word(uint32_t(12 + chunks.size())) + chunks;
+    save(path, file.data(), file.size());
+}
+
+/// A triangle with an index, texture coordinates, a sparse accessor, a texture, instances, a light, a camera and extensions.
+constexpr const char* kRichScene = R"({
+"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],
+"extensionsUsed":["KHR_lights_punctual","KHR_materials_ior","KHR_materials_transmission","EXT_mesh_gpu_instancing"],
+"extensions":{"KHR_lights_punctual":{"lights":[{"type":"spot","intensity":5,"spot":{"outerConeAngle":0.5}}]}},
+"nodes":[{"mesh":0,"rotation":[0,0.6,0,0.8],"scale":[1,2,1],"children":[1],
+ "extensions":{"EXT_mesh_gpu_instancing":{"attributes":{"TRANSLATION":3}}}},
+ {"camera":0,"extensions":{"KHR_lights_punctual":{"light":0}}}],
+"cameras":[{"type":"perspective","perspective":{"yfov":0.7,"znear":0.1}}],
+"meshes":[{"primitives":[{"attributes":{"POSITION":0,"TEXCOORD_0":1},"indices":2,"material":0},{"attributes":{"POSITION":4}}]}],
+"materials":[{"alphaMode":"MASK","doubleSided":true,"normalTexture":{"index":0},"emissiveFactor":[1,0.5,0],
+ "pbrMetallicRoughness":{"baseColorTexture":{"index":0},"metallicFactor":0.5},
+ "extensions":{"KHR_materials_ior":{"ior":1.4},"KHR_materials_transmission":{"transmissionFactor":0.5}}}],
+"textures":[{"source":0,"sampler":0}],"samplers":[{"wrapS":33071,"magFilter":9728}],
+"images":[{"bufferView":6,"mimeType":"image/png"}],
+"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]},
+ {"bufferView":1,"componentType":5126,"count":3,"type":"VEC2"},
+ {"bufferView":2,"componentType":5123,"count":3,"type":"SCALAR"},
+ {"bufferView":3,"componentType":5126,"count":2,"type":"VEC3"},
+ {"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[9,9,9],"sparse":{"count":2,
+  "indices":{"bufferView":4,"componentType":5121},"values":{"bufferView":5}}}],
+"bufferViews":[{"buffer":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":24},{"buffer":0,"byteOffset":60,"byteLength":6},
+ {"buffer":0,"byteOffset":68,"byteLength":24},{"buffer":0,"byteOffset":92,"byteLength":2},{"buffer":0,"byteOffset":96,"byteLength":24},
+ {"buffer":0,"byteOffset":120,"byteLength":%PNG%}],
+"buffers":[{"byteLength":%BYTES%}]})";
+
 void saveScenes(const fs::path& folder)
 {
-    GltfBuilder plain;
-    plain.triangle();
-    plain.writeGlb(folder / "plain.glb");
+    const auto floats = [](const std::vector<float>& values)
+    { return std::string(reinterpret_cast<const char*>(values.data()), 4 * values.size()); };
+    const std::string triangle = floats({0, 0, 0, 1, 0, 0, 0, 1, 0});
+    saveGlb(folder / "plain.glb",
+            R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],)"
+            R"("meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],)"
+            R"("accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]}],)"
+            R"("bufferViews":[{"buffer":0,"byteLength":36}],"buffers":[{"byteLength":%BYTES%}]})",
+            triangle);
 
-    GltfBuilder rich;
-    const int texture = rich.texture(2, 2, {255, 0, 0, 255, 0, 255, 0, 0, 0, 0, 255, 255, 9, 9, 9, 255});
-    rich.material({{"alphaMode", "MASK"},
-                   {"doubleSided", true},
-                   {"normalTexture", {{"index", texture}}},
-                   {"emissiveFactor", {1, 0.5, 0}},
-                   {"pbrMetallicRoughness", {{"baseColorTexture", {{"index", texture}}}, {"metallicFactor", 0.5}}},
-                   {"extensions", {{"KHR_materials_ior", {{"ior", 1.4}}}, {"KHR_materials_transmission", {{"transmissionFactor", 0.5}}}}}});
-    const int uv = rich.accessor(std::vector<float>{0, 1, 1, 1, 0, 0}, "VEC2", 5126, 3);
-    const int indices = rich.accessor(std::vector<uint16_t>{0, 1, 2}, "SCALAR", 5123, 3);
-    rich.triangle({{"material", 0}, {"indices", indices}, {"attributes", {{"TEXCOORD_0", uv}}}});
-    rich.json["extensionsUsed"] = {"KHR_lights_punctual", "KHR_materials_ior", "KHR_materials_transmission", "EXT_mesh_gpu_instancing"};
-    rich.json["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "spot"}, {"intensity", 5}, {"spot", {{"outerConeAngle", 0.5}}}}};
-    rich.json["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 0.7}, {"znear", 0.1}}}}};
-    rich.json["nodes"][0]["camera"] = 0;
-    rich.json["nodes"][0]["rotation"] = {0, 0.6, 0, 0.8};
-    rich.json["nodes"][0]["extensions"]["KHR_lights_punctual"]["light"] = 0;
-    const int places = rich.accessor(std::vector<float>{0, 0, 0, 5, 0, 0}, "VEC3", 5126, 2);
-    rich.json["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"]["TRANSLATION"] = places;
-    rich.writeGlb(folder / "rich.glb");
-
-    GltfBuilder sparse;
-    const int places_at = sparse.view(std::vector<uint8_t>{0, 2}.data(), 2);
-    const int values = sparse.view(std::vector<float>{1, 2, 3, 4, 5, 6}.data(), 24);
-    sparse.triangle();
-    sparse.json["accessors"][0]["sparse"] = {{"count", 2},
-                                             {"indices", {{"bufferView", places_at}, {"componentType", 5121}}},
-                                             {"values", {{"bufferView", values}}}};
-    sparse.writeGlb(folder / "sparse.glb");
+    const std::vector<uint8_t> png = encodePng(2, 2, 3, std::vector<uint8_t>{255, 0, 0, 0, 255, 0, 0, 0, 255, 9, 9, 9});
+    std::string buffer = triangle + floats({0, 1, 1, 1, 0, 0}) + std::string("\0\0\1\0\2\0\0\0", 8) + floats({0, 0, 0, 5, 0, 0}) +
+                         std::string("\0\2\0\0", 4) + floats({1, 2, 3, 4, 5, 6});
+    buffer.append(png.begin(), png.end());
+    buffer.resize((buffer.size() + 3) / 4 * 4);
+    std::string json = kRichScene;
+    json.replace(json.find("%PNG%"), 5, std::to_string(png.size()));
+    saveGlb(folder / "rich.glb", json, buffer);
 }
 
 /// Every setting at the ends of its range, and some that are none.

@@ -65,7 +65,7 @@ int main(int argc, char** argv)
     for (int i = 0; i < std::atoi(argv[2]); ++i)
     {
         Bytes bytes = seeds[random() % seeds.size()];
-        for (uint32_t k = 0; k <= random() % 6; ++k)
+        for (uint32_t k = 0; k <= random() % 3; ++k)
             change(bytes, random);
         LLVMFuzzerTestOneInput(bytes.data(), bytes.size());
     }
