@@ -62,24 +62,25 @@ EnvironmentImage toEquirectangular(const EnvironmentImage& cube)
     EnvironmentImage map{.width = std::min(4 * cube.width, kMaxEnvironmentWidth), .height = 0, .texels = {}};
     map.height = map.width / 2;
     map.texels.resize(size_t(map.width) * map.height);
-    parallelFor(map.height,
-                [&](size_t row)
+    parallelFor(
+        map.height,
+        [&](size_t row)
+        {
+            for (uint32_t column = 0; column < map.width; ++column)
+            {
+                std::array<double, 3> sum{};
+                for (int i = 0; i < kSamples * kSamples; ++i)
                 {
-                    for (uint32_t column = 0; column < map.width; ++column)
-                    {
-                        std::array<double, 3> sum{};
-                        for (int i = 0; i < kSamples * kSamples; ++i)
-                        {
-                            const double u = (column + (i % kSamples + 0.5) / kSamples) / map.width;
-                            const double v = (double(row) + (i / kSamples + 0.5) / kSamples) / map.height;
-                            const double phi = (u - 0.5) * 2 * std::numbers::pi, theta = v * std::numbers::pi;
-                            const double ring = std::sin(theta);
-                            const auto rgb = lookUp(cube, {ring * std::cos(phi), std::cos(theta), ring * std::sin(phi)});
-                            for (size_t c = 0; c < 3; ++c)
-                                sum[c] += rgb[c] / (kSamples * kSamples);
-                        }
-                        map.texels[row * map.width + column] = {float(sum[0]), float(sum[1]), float(sum[2]), 1};
-                    }
-                });
+                    const double u = (column + (i % kSamples + 0.5) / kSamples) / map.width;
+                    const double v = (double(row) + (i / kSamples + 0.5) / kSamples) / map.height;
+                    const double phi = (u - 0.5) * 2 * std::numbers::pi, theta = v * std::numbers::pi;
+                    const double ring = std::sin(theta);
+                    const auto rgb = lookUp(cube, {ring * std::cos(phi), std::cos(theta), ring * std::sin(phi)});
+                    for (size_t c = 0; c < 3; ++c)
+                        sum[c] += rgb[c] / (kSamples * kSamples);
+                }
+                map.texels[row * map.width + column] = {float(sum[0]), float(sum[1]), float(sum[2]), 1};
+            }
+        });
     return map;
 }

@@ -26,16 +26,18 @@ std::vector<std::string> warningsOf(const EnvironmentSink& sink, const std::stri
 {
     const PictureInfo& info = sink.info;
     std::vector<std::string> warnings;
-    const auto add = [&](const std::string& text) { warnings.push_back(fmt::format("environment {}: {}", name, text)); };
+    const auto add = [&](const std::string& text)
+    { warnings.push_back(fmt::format("environment {}: {}", name, text)); };
     for (const std::string& note : info.notes)
         add(note);
     if (info.cube)
         add("a cube map, which was resampled to an equirectangular one");
     else if (sink.image.width != info.width || sink.image.height != info.height)
-        add(fmt::format("its {} x {} texels were averaged to {} x {}", info.width, info.height, sink.image.width, sink.image.height));
+        add(fmt::format("its {} x {} texels were averaged to {} x {}", info.width, info.height, sink.image.width,
+                        sink.image.height));
     if (hasOddShape(info))
-        add(fmt::format("{} x {} texels are taken for an equirectangular map, which would be twice as wide as high", info.width,
-                        info.height));
+        add(fmt::format("{} x {} texels are taken for an equirectangular map, which would be twice as wide as high",
+                        info.width, info.height));
     const Repairs& repairs = sink.repairs;
     const auto count = [&](uint64_t texels, const char* what, const char* instead)
     {
@@ -74,13 +76,13 @@ Result<LoadedEnvironment> loadEnvironment(const std::filesystem::path& path, flo
     std::string suffix = path.extension().string();
     std::transform(suffix.begin(), suffix.end(), suffix.begin(), [](unsigned char c) { return char(std::tolower(c)); });
     if (suffix != ".exr" && suffix != ".hdr")
-        return Error{ExitCode::kUnsupported, "an environment map must be an OpenEXR (.exr) or Radiance (.hdr) file"}.about(
-            path.string());
+        return Error{ExitCode::kUnsupported, "an environment map must be an OpenEXR (.exr) or Radiance (.hdr) file"}
+            .about(path.string());
     const Result<package::MappedFile> file = package::MappedFile::open(path);
     if (!file)
         return file.error().about(path.string());
-    Result<LoadedEnvironment> loaded =
-        (suffix == ".exr" ? decodeExrEnvironment : decodeHdrEnvironment)(file->bytes(), path.filename().string(), scale);
+    Result<LoadedEnvironment> loaded = (suffix == ".exr" ? decodeExrEnvironment : decodeHdrEnvironment)(
+        file->bytes(), path.filename().string(), scale);
     if (!loaded)
         return loaded.error().about(path.string());
     return loaded;

@@ -23,5 +23,7 @@ struct LoadedEnvironment
 Result<LoadedEnvironment> loadEnvironment(const std::filesystem::path& path, float scale = 1);
 
 /// The same of a file's bytes; `name` is what warnings call it.
-Result<LoadedEnvironment> decodeExrEnvironment(std::span<const std::byte> file, const std::string& name, float scale = 1);
-Result<LoadedEnvironment> decodeHdrEnvironment(std::span<const std::byte> file, const std::string& name, float scale = 1);
+Result<LoadedEnvironment> decodeExrEnvironment(std::span<const std::byte> file, const std::string& name,
+                                               float scale = 1);
+Result<LoadedEnvironment> decodeHdrEnvironment(std::span<const std::byte> file, const std::string& name,
+                                               float scale = 1);

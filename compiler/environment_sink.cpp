@@ -19,7 +19,8 @@ Status EnvironmentSink::begin(const PictureInfo& picture)
         constexpr uint32_t kMaxFace = 4096;
         if (info.width > kMaxFace)
             return Error{ExitCode::kUnsupported,
-                         fmt::format("the cube map has faces of {} pixels a side, at most {} are read; reduce it", info.width, kMaxFace)};
+                         fmt::format("the cube map has faces of {} pixels a side, at most {} are read; reduce it",
+                                     info.width, kMaxFace)};
     }
     else
     {
@@ -67,27 +68,28 @@ void EnvironmentSink::add(const ScanLine& line)
         texel.y += weight * rgb.y;
         texel.z += weight * rgb.z;
     };
-    forEachPixel(line,
-                 [&](uint32_t x, uint32_t y, const float* stored)
-                 {
-                     Repairs pixel;
-                     const gpu::vec3 rgb{repaired(stored[0], pixel), repaired(stored[1], pixel), repaired(stored[2], pixel)};
-                     repairs.not_a_number += pixel.not_a_number > 0;
-                     repairs.infinite += pixel.infinite > 0;
-                     repairs.negative += pixel.negative > 0;
-                     if (!reduced_)
-                     {
-                         image.texels[size_t(y) * image.width + x] = {rgb.x, rgb.y, rgb.z, 1};
-                         return;
-                     }
-                     const Coverage& column = columns_[x];
-                     const Coverage& row = rows_[y];
-                     put(column.first, row.first, rgb, column.in_first * row.in_first);
-                     if (column.in_second > 0)
-                         put(column.first + 1, row.first, rgb, column.in_second * row.in_first);
-                     if (row.in_second > 0)
-                         put(column.first, row.first + 1, rgb, column.in_first * row.in_second);
-                     if (column.in_second > 0 && row.in_second > 0)
-                         put(column.first + 1, row.first + 1, rgb, column.in_second * row.in_second);
-                 });
+    forEachPixel(
+        line,
+        [&](uint32_t x, uint32_t y, const float* stored)
+        {
+            Repairs pixel;
+            const gpu::vec3 rgb{repaired(stored[0], pixel), repaired(stored[1], pixel), repaired(stored[2], pixel)};
+            repairs.not_a_number += pixel.not_a_number > 0;
+            repairs.infinite += pixel.infinite > 0;
+            repairs.negative += pixel.negative > 0;
+            if (!reduced_)
+            {
+                image.texels[size_t(y) * image.width + x] = {rgb.x, rgb.y, rgb.z, 1};
+                return;
+            }
+            const Coverage& column = columns_[x];
+            const Coverage& row = rows_[y];
+            put(column.first, row.first, rgb, column.in_first * row.in_first);
+            if (column.in_second > 0)
+                put(column.first + 1, row.first, rgb, column.in_second * row.in_first);
+            if (row.in_second > 0)
+                put(column.first, row.first + 1, rgb, column.in_first * row.in_second);
+            if (column.in_second > 0 && row.in_second > 0)
+                put(column.first + 1, row.first + 1, rgb, column.in_second * row.in_second);
+        });
 }

@@ -19,8 +19,8 @@ struct Coverage
     float in_second = 0;
 };
 
-/// [pixels] of an axis that is cut into `texels` <= `pixels` equal parts, weighted by the measure from 0 to `position` that
-/// `measure` gives, in units of the axis' length.
+/// [pixels] of an axis that is cut into `texels` <= `pixels` equal parts, weighted by the measure from 0 to `position`
+/// that `measure` gives, in units of the axis' length.
 template <typename Measure>
 std::vector<Coverage> coverAxis(uint32_t pixels, uint32_t texels, const Measure& measure)
 {
@@ -33,7 +33,8 @@ std::vector<Coverage> coverAxis(uint32_t pixels, uint32_t texels, const Measure&
             continue;
         }
         const auto first = uint32_t(uint64_t(i) * texels / pixels);
-        const auto size = [&](uint32_t texel) { return measure(double(texel + 1) / texels) - measure(double(texel) / texels); };
+        const auto size = [&](uint32_t texel)
+        { return measure(double(texel + 1) / texels) - measure(double(texel) / texels); };
         const double low = double(i) / pixels, high = double(i + 1) / pixels;
         const bool crosses = uint64_t(i + 1) * texels > uint64_t(first + 1) * pixels;
         const double edge = crosses ? double(first + 1) / texels : high;

@@ -59,7 +59,8 @@ ExrChannels chooseLayer(const Imf::ChannelList& channels)
     if (coloured.size() > 1 || !coloured.front().empty())
         chosen.notes.push_back(
             coloured.front().empty()
-                ? fmt::format("the EXR image has {} layers with colour: its channels without a layer are read", coloured.size())
+                ? fmt::format("the EXR image has {} layers with colour: its channels without a layer are read",
+                              coloured.size())
                 : fmt::format("the EXR image has layers: of {} with colour \"{}\" is read", coloured.size(),
                               withoutDot(coloured.front())));
     return chosen;
@@ -102,6 +103,7 @@ Result<ExrChannels> chooseExrChannels(const Imf::MultiPartInputFile& file)
     }
     if (deep > 0)
         return Error{ExitCode::kUnsupported, "the EXR image has deep pixels; flatten it first"};
-    return Error{ExitCode::kInvalid, fmt::format("the EXR image has neither channels R, G, B nor a channel Y, but the channels {}",
-                                                 channelNames(file))};
+    return Error{ExitCode::kInvalid,
+                 fmt::format("the EXR image has neither channels R, G, B nor a channel Y, but the channels {}",
+                             channelNames(file))};
 }

@@ -19,8 +19,8 @@ Error invalid(std::string message)
 
 constexpr size_t kMagicBytes = 8; // and version
 
-/// An attribute is its name and its type, each ended by a zero, its size and as many bytes; an empty name ends a header, an
-/// empty header the list of several. The library makes room for a size before it finds that the file ends.
+/// An attribute is its name and its type, each ended by a zero, its size and as many bytes; an empty name ends a
+/// header, an empty header the list of several. The library makes room for a size before it finds that the file ends.
 Status checkAttributes(std::span<const std::byte> file, bool several_parts)
 {
     std::string_view text(reinterpret_cast<const char*>(file.data()), file.size());
@@ -67,9 +67,10 @@ Status checkBlocks(const Imf::Header& header, const ExrWindow& data, size_t file
         columns = parts(data.width(), tiles.xSize);
         // The library holds a row of whole tiles, also where they are larger than the picture.
         if (columns * tiles.xSize > kMaxPicturePixels / 4 / int64_t(tiles.ySize))
-            return Error{ExitCode::kUnsupported, fmt::format("the EXR image has tiles of {} x {} pixels, which are too large; save it "
-                                                             "with smaller ones",
-                                                             tiles.xSize, tiles.ySize)};
+            return Error{ExitCode::kUnsupported,
+                         fmt::format("the EXR image has tiles of {} x {} pixels, which are too large; save it "
+                                     "with smaller ones",
+                                     tiles.xSize, tiles.ySize)};
     }
     const int64_t blocks = columns * parts(data.height(), exrStripRows(header));
     if (blocks * kBlockBytes > int64_t(file_bytes))
@@ -82,7 +83,8 @@ int64_t exrStripRows(const Imf::Header& header)
 {
     if (header.hasTileDescription())
         return header.tileDescription().ySize;
-    return header.compression() == Imf::DWAB_COMPRESSION ? 256 : 32; // other compressions' blocks have 1, 16 or 32 lines
+    return header.compression() == Imf::DWAB_COMPRESSION ? 256
+                                                         : 32; // other compressions' blocks have 1, 16 or 32 lines
 }
 
 Status checkExrWindow(const ExrWindow& window, const char* name)
@@ -91,9 +93,10 @@ Status checkExrWindow(const ExrWindow& window, const char* name)
         return invalid(fmt::format("the EXR image's {} window is empty", name));
     if (window.width() > kMaxPictureSide || window.height() > kMaxPictureSide ||
         window.width() * window.height() > kMaxPicturePixels)
-        return Error{ExitCode::kUnsupported,
-                     fmt::format("the EXR image's {} window has {} x {} pixels, allowed are sides of {} and {} pixels in all", name,
-                                 window.width(), window.height(), kMaxPictureSide, kMaxPicturePixels)};
+        return Error{
+            ExitCode::kUnsupported,
+            fmt::format("the EXR image's {} window has {} x {} pixels, allowed are sides of {} and {} pixels in all",
+                        name, window.width(), window.height(), kMaxPictureSide, kMaxPicturePixels)};
     constexpr int64_t kFarthest = 1 << 24; // keeps addresses relative to the origin within range
     if (std::max({-window.min_x, window.max_x, -window.min_y, window.max_y}) > kFarthest)
         return invalid(fmt::format("the EXR image's {} window lies more than {} pixels from 0", name, kFarthest));

@@ -25,7 +25,8 @@ struct ExrWindow
 /// Rows that are read at once: a row of tiles, or whole blocks of lines.
 int64_t exrStripRows(const Imf::Header& header);
 
-/// @param name of the window, for the error. kInvalid where it is empty or out of reach, kUnsupported where it is too large
+/// @param name of the window, for the error. kInvalid where it is empty or out of reach, kUnsupported where it is too
+/// large
 Status checkExrWindow(const ExrWindow& window, const char* name);
 
 /// The headers of all parts; their data windows are of sizes that we read and that the file can hold.

@@ -81,15 +81,17 @@ Status applyVariable(std::string_view line, HdrHeader& header, Primaries& primar
         return Success{}; // a comment or a command
     const std::string_view name = line.substr(0, equals);
     std::string_view value = line.substr(equals + 1);
-    const auto unclear = [&] { return invalid(fmt::format("the HDR image has the line \"{}\", which makes no sense", line.substr(0, 80))); };
+    const auto unclear = [&]
+    { return invalid(fmt::format("the HDR image has the line \"{}\", which makes no sense", line.substr(0, 80))); };
     if (name == "FORMAT")
     {
         const std::string_view format = takeWord(value);
         if (format == "32-bit_rle_xyze")
             primaries = kXyzPrimaries;
         else if (format != "32-bit_rle_rgbe")
-            return Error{ExitCode::kUnsupported,
-                         fmt::format("the HDR image has the format \"{}\"; save it as 32-bit_rle_rgbe", format.substr(0, 80))};
+            return Error{
+                ExitCode::kUnsupported,
+                fmt::format("the HDR image has the format \"{}\"; save it as 32-bit_rle_rgbe", format.substr(0, 80))};
     }
     else if (name == "EXPOSURE" && !divide(header.factor, value, 1))
         return unclear();
@@ -109,7 +111,10 @@ Status applyVariable(std::string_view line, HdrHeader& header, Primaries& primar
 Status applyResolution(std::string_view line, HdrHeader& header)
 {
     const auto unclear = [&]
-    { return invalid(fmt::format("the HDR image has \"{}\" where its size should be, such as -Y 512 +X 1024", line.substr(0, 80))); };
+    {
+        return invalid(fmt::format("the HDR image has \"{}\" where its size should be, such as -Y 512 +X 1024",
+                                   line.substr(0, 80)));
+    };
     std::string_view rest = line;
     std::string axes;
     std::array<uint32_t*, 2> counts{&header.line_count, &header.line_pixels};
@@ -137,9 +142,10 @@ Status applyResolution(std::string_view line, HdrHeader& header)
         return unclear();
     header.columns = axes == "XY";
     if (int64_t(header.line_count) * header.line_pixels > kMaxPicturePixels)
-        return Error{ExitCode::kUnsupported,
-                     fmt::format("the HDR image has {} lines of {} pixels, more than the {} pixels that are read; reduce it",
-                                 header.line_count, header.line_pixels, kMaxPicturePixels)};
+        return Error{
+            ExitCode::kUnsupported,
+            fmt::format("the HDR image has {} lines of {} pixels, more than the {} pixels that are read; reduce it",
+                        header.line_count, header.line_pixels, kMaxPicturePixels)};
     return Success{};
 }
 } // namespace

@@ -14,9 +14,9 @@ struct HdrHeader
     // A picture is stored as `line_count` lines of `line_pixels` pixels; the orientation says how they lie.
     uint32_t line_count = 0;
     uint32_t line_pixels = 0;
-    bool columns = false;       // a line is a column, from the top or the bottom
-    bool bottom_up = false;     // +Y
-    bool right_to_left = false; // -X
+    bool columns = false;                  // a line is a column, from the top or the bottom
+    bool bottom_up = false;                // +Y
+    bool right_to_left = false;            // -X
     std::array<double, 3> factor{1, 1, 1}; // stored values times this are radiance: 1 / (EXPOSURE * COLORCORR)
     Matrix3 to_rec709 = kIdentity3;
     std::vector<std::string> notes; // as PictureInfo::notes

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-inline constexpr int64_t kMaxPictureSide = 65536;               // pixels
+inline constexpr int64_t kMaxPictureSide = 65536;              // pixels
 inline constexpr int64_t kMaxPicturePixels = int64_t(1) << 29; // 32768 x 16384
 
 struct PictureInfo

@@ -29,10 +29,12 @@ Result<bool> isCube(const Imf::Header& header)
 {
     if (header.find("envmap") == header.end())
         return false;
-    if (Imf::hasEnvmap(header) && (Imf::envmap(header) == Imf::ENVMAP_LATLONG || Imf::envmap(header) == Imf::ENVMAP_CUBE))
+    if (Imf::hasEnvmap(header) &&
+        (Imf::envmap(header) == Imf::ENVMAP_LATLONG || Imf::envmap(header) == Imf::ENVMAP_CUBE))
         return Imf::envmap(header) == Imf::ENVMAP_CUBE;
-    return Error{ExitCode::kUnsupported, "the EXR image's attribute \"envmap\" names neither a latitude-longitude map nor a "
-                                         "cube; convert it to one of them"};
+    return Error{ExitCode::kUnsupported,
+                 "the EXR image's attribute \"envmap\" names neither a latitude-longitude map nor a "
+                 "cube; convert it to one of them"};
 }
 
 Primaries primariesOf(const Imf::Header& header, std::vector<std::string>& notes)
@@ -51,7 +53,8 @@ Primaries primariesOf(const Imf::Header& header, std::vector<std::string>& notes
 class PartReader
 {
 public:
-    PartReader(Imf::MultiPartInputFile& file, const ExrChannels& chosen, const Primaries& primaries, const ExrWindow& shown)
+    PartReader(Imf::MultiPartInputFile& file, const ExrChannels& chosen, const Primaries& primaries,
+               const ExrWindow& shown)
         : part_(file, chosen.part), chosen_(chosen), data_(part_.header().dataWindow()), shown_(shown),
           to_rec709_(*toRec709(primaries)), to_xyz_(*toXyz(primaries))
     {
@@ -112,8 +115,8 @@ private:
     }
 
     /// The library addresses pixel (x, y) at base + x * x_stride + y * y_stride, from the origin of all coordinates.
-    static Imf::Slice slice(float* first, int64_t pixel_floats, int64_t row_pixels, int64_t x, int64_t y, int x_sampling,
-                            int y_sampling)
+    static Imf::Slice slice(float* first, int64_t pixel_floats, int64_t row_pixels, int64_t x, int64_t y,
+                            int x_sampling, int y_sampling)
     {
         const auto x_stride = pixel_floats * int64_t(sizeof(float));
         const int64_t y_stride = x_stride * row_pixels;
@@ -149,8 +152,8 @@ private:
     void pass(int64_t row, int64_t in_strip, PictureSink& sink)
     {
         const int64_t from = std::max(data_.min_x, shown_.min_x), to = std::min(data_.max_x, shown_.max_x);
-        const std::span<float> rgb = std::span(rgb_).subspan(size_t(3 * (in_strip * data_.width() + from - data_.min_x)),
-                                                             size_t(3 * (to - from)));
+        const std::span<float> rgb = std::span(rgb_).subspan(
+            size_t(3 * (in_strip * data_.width() + from - data_.min_x)), size_t(3 * (to - from)));
         for (size_t i = 0; i < rgb.size(); i += 3)
             toRgb(&rgb[i]);
         sink.add({.x = uint32_t(from - shown_.min_x), .y = uint32_t(row - shown_.min_y), .rgb = rgb});
@@ -201,8 +204,9 @@ Status readPicture(std::span<const std::byte> bytes, PictureSink& sink)
     if (const Status status = checkExrWindow(shown, "display"); !status)
         return status;
     if (*cube && data.height() != 6 * data.width())
-        return invalid(fmt::format("the EXR image is a cube map of {} x {} pixels; six square faces below each other are needed",
-                                   data.width(), data.height()));
+        return invalid(
+            fmt::format("the EXR image is a cube map of {} x {} pixels; six square faces below each other are needed",
+                        data.width(), data.height()));
     if (!file.partComplete(chosen->part))
         return invalid("the EXR image is cut off or damaged: blocks of it are missing");
 
@@ -222,8 +226,8 @@ public:
     {
         constexpr uint64_t kMaxPixels = uint64_t(1) << 28;
         if (uint64_t(info.width) * info.height > kMaxPixels)
-            return Error{ExitCode::kUnsupported,
-                         fmt::format("the EXR image has {} x {} pixels, at most {} are read", info.width, info.height, kMaxPixels)};
+            return Error{ExitCode::kUnsupported, fmt::format("the EXR image has {} x {} pixels, at most {} are read",
+                                                             info.width, info.height, kMaxPixels)};
         image = {info.width, info.height, std::vector<float>(3 * size_t(info.width) * info.height)};
         return Success{};
     }

@@ -26,12 +26,18 @@ const char* describe(Damage damage)
 {
     switch (damage)
     {
-    case Damage::kCut: return "the file is cut off there";
-    case Damage::kOverrun: return "a run goes beyond its end";
-    case Damage::kNoRun: return "it has a run of no pixels";
-    case Damage::kNothing: return "it begins with a repetition";
-    case Damage::kLength: return "it states another length than the header";
-    case Damage::kNone: break;
+    case Damage::kCut:
+        return "the file is cut off there";
+    case Damage::kOverrun:
+        return "a run goes beyond its end";
+    case Damage::kNoRun:
+        return "it has a run of no pixels";
+    case Damage::kNothing:
+        return "it begins with a repetition";
+    case Damage::kLength:
+        return "it states another length than the header";
+    case Damage::kNone:
+        break;
     }
     return "";
 }

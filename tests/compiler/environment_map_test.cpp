@@ -27,7 +27,9 @@ fs::path shared(const char* name)
 
 std::vector<std::byte> exrOf(int width, int height, const std::function<float(int, int)>& value)
 {
-    return writeExr({{.data = window(0, 0, width, height), .display = window(0, 0, width, height), .channels = rgbChannels(value)}});
+    return writeExr({{.data = window(0, 0, width, height),
+                      .display = window(0, 0, width, height),
+                      .channels = rgbChannels(value)}});
 }
 
 LoadedEnvironment decoded(const std::vector<std::byte>& exr, float scale = 1)
@@ -42,14 +44,17 @@ void feed(EnvironmentSink& sink, const ImageF& image)
 {
     ASSERT_TRUE(sink.begin({.width = image.width, .height = image.height, .notes = {}}));
     for (uint32_t y = 0; y < image.height; ++y)
-        sink.add({.x = 0, .y = y, .rgb = std::span(image.rgb).subspan(size_t(3) * y * image.width, size_t(3) * image.width)});
+        sink.add({.x = 0,
+                  .y = y,
+                  .rgb = std::span(image.rgb).subspan(size_t(3) * y * image.width, size_t(3) * image.width)});
 }
 
 TEST(EnvironmentMap, ReplacesWhatNoLightCanBeAndCountsIt)
 {
     constexpr float kNan = std::numeric_limits<float>::quiet_NaN(), kInfinity = std::numeric_limits<float>::infinity();
     const std::array<float, 8> values{1, kNan, kInfinity, -kInfinity, -3, kInfinity, 2, 0};
-    const LoadedEnvironment loaded = decoded(exrOf(4, 2, [&](int x, int y) { return values[size_t(4 * y + x)]; }), 0.5f);
+    const LoadedEnvironment loaded =
+        decoded(exrOf(4, 2, [&](int x, int y) { return values[size_t(4 * y + x)]; }), 0.5f);
     const std::array<float, 8> want{0.5f, 0, 32752, 0, 0, 32752, 1, 0};
     for (size_t i = 0; i < want.size(); ++i)
         EXPECT_EQ(loaded.image.texels[i].x, want[i]) << i;
@@ -63,7 +68,8 @@ TEST(EnvironmentMap, OfAnySizeIsRead)
 {
     for (const auto& [width, height] : {std::pair{1, 1}, {3, 1}, {1, 7}, {17, 9}, {100, 100}})
     {
-        const LoadedEnvironment loaded = decoded(exrOf(width, height, [](int x, int y) { return float(1 + x + 10 * y); }));
+        const LoadedEnvironment loaded =
+            decoded(exrOf(width, height, [](int x, int y) { return float(1 + x + 10 * y); }));
         ASSERT_EQ(loaded.image.texels.size(), size_t(width * height));
         EXPECT_EQ(loaded.image.texels.back().x, float(width + 10 * (height - 1)));
         EXPECT_EQ(loaded.warnings.size(), height >= 7 && height != 9 ? 1u : 0u) << "hardly maps of this kind";
@@ -122,9 +128,14 @@ TEST(EnvironmentMap, CubesKeepTheirDirections)
         {
             const Imf::CubeMapFace face = Imf::CubeMapFace(y / kSide);
             // The position in a face whose pixel this is: the library mirrors and turns some.
-            for (const auto& [fx, fy] : {std::pair{x, y % kSide}, {x, kSide - 1 - y % kSide}, {kSide - 1 - x, y % kSide},
-                                         {kSide - 1 - x, kSide - 1 - y % kSide}, {y % kSide, x}, {y % kSide, kSide - 1 - x},
-                                         {kSide - 1 - y % kSide, x}, {kSide - 1 - y % kSide, kSide - 1 - x}})
+            for (const auto& [fx, fy] : {std::pair{x, y % kSide},
+                                         {x, kSide - 1 - y % kSide},
+                                         {kSide - 1 - x, y % kSide},
+                                         {kSide - 1 - x, kSide - 1 - y % kSide},
+                                         {y % kSide, x},
+                                         {y % kSide, kSide - 1 - x},
+                                         {kSide - 1 - y % kSide, x},
+                                         {kSide - 1 - y % kSide, kSide - 1 - x}})
             {
                 const Imath::V2f in_face{float(fx), float(fy)};
                 const Imath::V2f at = Imf::CubeMap::pixelPosition(face, box, in_face);
@@ -136,7 +147,9 @@ TEST(EnvironmentMap, CubesKeepTheirDirections)
     };
     const ExrPart part{.data = box,
                        .display = box,
-                       .channels = {{.name = "R", .value = component(0)}, {.name = "G", .value = component(1)}, {.name = "B", .value = component(2)}},
+                       .channels = {{.name = "R", .value = component(0)},
+                                    {.name = "G", .value = component(1)},
+                                    {.name = "B", .value = component(2)}},
                        .envmap = Imf::ENVMAP_CUBE};
     const LoadedEnvironment loaded = decoded(writeExr({part}));
     ASSERT_EQ(loaded.warnings.size(), 1u);
@@ -147,7 +160,8 @@ TEST(EnvironmentMap, CubesKeepTheirDirections)
     for (uint32_t y = 0; y < map.height; ++y)
         for (uint32_t x = 0; x < map.width; ++x)
         {
-            const double phi = ((x + 0.5) / map.width - 0.5) * 2 * std::numbers::pi, theta = (y + 0.5) / map.height * std::numbers::pi;
+            const double phi = ((x + 0.5) / map.width - 0.5) * 2 * std::numbers::pi,
+                         theta = (y + 0.5) / map.height * std::numbers::pi;
             const gpu::vec4& texel = map.texels[size_t(y) * map.width + x];
             // Second derivatives of at most 2 over a quarter of a pixel's or texel's width squared.
             constexpr double kCurvature = 2 * 2.0 / kSide * 2.0 / kSide / 4;
@@ -164,7 +178,8 @@ TEST(EnvironmentMap, OfOneCubePixelIsAMeanOfFaces)
         cube.texels.push_back({float(face), 0, 0, 1});
     const EnvironmentImage map = toEquirectangular(cube);
     ASSERT_EQ(map.texels.size(), 8u);
-    // The row above the horizon looks 22.5 degrees and 67.5 degrees up, in columns about +-135 and +-45 degrees from +X.
+    // The row above the horizon looks 22.5 degrees and 67.5 degrees up, in columns about +-135 and +-45 degrees from
+    // +X.
     for (uint32_t x = 0; x < 4; ++x)
     {
         EXPECT_TRUE(map.texels[x].x > 0 && map.texels[x].x < 4.5f) << map.texels[x].x;
@@ -200,7 +215,8 @@ TEST(LoadEnvironment, ReadsHdrFilesAndScalesThem)
     const TemporaryFolder folder;
     const ImageF image = exactHdrImage(32, 16, 4);
     const std::vector<std::byte> file = writeHdr(image);
-    std::ofstream(folder / "sky.HDR", std::ios::binary).write(reinterpret_cast<const char*>(file.data()), std::streamsize(file.size()));
+    std::ofstream(folder / "sky.HDR", std::ios::binary)
+        .write(reinterpret_cast<const char*>(file.data()), std::streamsize(file.size()));
     const auto loaded = loadEnvironment(folder / "sky.HDR", 2);
     ASSERT_TRUE(loaded) << loaded.error().message;
     EXPECT_TRUE(loaded->warnings.empty());

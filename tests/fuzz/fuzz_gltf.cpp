@@ -13,7 +13,8 @@ namespace
 /// The importer reads files only; this one goes with the process.
 struct GlbFile
 {
-    std::filesystem::path path = std::filesystem::temp_directory_path() / ("lumicut-fuzz-" + std::to_string(getpid()) + ".glb");
+    std::filesystem::path path =
+        std::filesystem::temp_directory_path() / ("lumicut-fuzz-" + std::to_string(getpid()) + ".glb");
     ~GlbFile()
     {
         std::error_code ignored;
@@ -38,7 +39,8 @@ void import(const std::filesystem::path& path)
     {
         const gpu::uvec3 t = mesh->triangles[i];
         const size_t count = mesh->positions.size();
-        check(t.x < count && t.y < count && t.z < count && mesh->materials[i] < scene.materials.size(), "triangle {}", i);
+        check(t.x < count && t.y < count && t.z < count && mesh->materials[i] < scene.materials.size(), "triangle {}",
+              i);
     }
 }
 } // namespace

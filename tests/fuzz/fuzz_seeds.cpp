@@ -1,5 +1,5 @@
-// Writes what the fuzz targets start from into a folder for each: packages, pictures, scenes and settings that are whole
-// and, between them, use most of what the readers know.
+// Writes what the fuzz targets start from into a folder for each: packages, pictures, scenes and settings that are
+// whole and, between them, use most of what the readers know.
 #include "image/write_image.h"
 #include "runtime/settings.h"
 #include "tests/format/sample_package.h"
@@ -62,7 +62,8 @@ void saveHdrs(const fs::path& folder)
     save(folder / "flat.hdr", writeHdr(image, {.runs = HdrRuns::kFlat, .magic = "#?RGBE", .orientation = "+Y -X"}));
     save(folder / "old.hdr", writeHdr(image, {.runs = HdrRuns::kOld, .lines = "EXPOSURE=2\nCOLORCORR=1 2 3\n"}));
     save(folder / "new.hdr", writeHdr(image, {.lines = "FORMAT=32-bit_rle_xyze\n# text\n", .orientation = "-X +Y"}));
-    save(folder / "primaries.hdr", writeHdr(image, {.lines = "PRIMARIES= 0.708 0.292 0.170 0.797 0.131 0.046 0.3127 0.329\n"}));
+    save(folder / "primaries.hdr",
+         writeHdr(image, {.lines = "PRIMARIES= 0.708 0.292 0.170 0.797 0.131 0.046 0.3127 0.329\n"}));
 }
 
 void saveExrs(const fs::path& folder)
@@ -71,8 +72,8 @@ void saveExrs(const fs::path& folder)
     const Imath::Box2i box = window(0, 0, 12, 8);
     const ExrPart plain{.data = box, .display = window(2, -3, 12, 20), .channels = rgbChannels(value)};
     save(folder / "plain.exr", writeExr({plain}));
-    for (const Imf::Compression compression : {Imf::NO_COMPRESSION, Imf::RLE_COMPRESSION, Imf::PIZ_COMPRESSION, Imf::PXR24_COMPRESSION,
-                                               Imf::B44_COMPRESSION, Imf::DWAA_COMPRESSION})
+    for (const Imf::Compression compression : {Imf::NO_COMPRESSION, Imf::RLE_COMPRESSION, Imf::PIZ_COMPRESSION,
+                                               Imf::PXR24_COMPRESSION, Imf::B44_COMPRESSION, Imf::DWAA_COMPRESSION})
     {
         ExrPart part = plain;
         part.compression = compression;
@@ -86,14 +87,17 @@ void saveExrs(const fs::path& folder)
     save(folder / "tiled.exr", writeExr({tiled}));
     const ExrPart chroma{.data = box,
                          .display = box,
-                         .channels = {{.name = "a.Y", .value = value}, {.name = "a.RY", .value = value, .sampling = 2}, {.name = "a.BY", .value = value, .sampling = 2}},
+                         .channels = {{.name = "a.Y", .value = value},
+                                      {.name = "a.RY", .value = value, .sampling = 2},
+                                      {.name = "a.BY", .value = value, .sampling = 2}},
                          .name = "second"};
     save(folder / "chroma.exr", writeExr({chroma}));
     ExrPart cube = plain;
     cube.data = cube.display = window(0, 0, 2, 12);
     cube.envmap = Imf::ENVMAP_CUBE;
     save(folder / "cube.exr", writeExr({cube}));
-    const ExrPart deep{.data = box, .display = box, .channels = {{.name = "Z", .value = value}}, .name = "first", .deep = true};
+    const ExrPart deep{
+        .data = box, .display = box, .channels = {{.name = "Z", .value = value}}, .name = "first", .deep = true};
     save(folder / "parts.exr", writeExr({deep, chroma}));
 }
 
@@ -104,12 +108,14 @@ void saveGlb(const fs::path& path, std::string json, const std::string& buffer)
     json.replace(json.find(mark), mark.size(), std::to_string(buffer.size()));
     json.resize((json.size() + 3) / 4 * 4, ' ');
     const auto word = [](uint32_t value) { return std::string(reinterpret_cast<const char*>(&value), sizeof(value)); };
-    const std::string chunks = word(uint32_t(json.size())) + "JSON" + json + word(uint32_t(buffer.size())) + std::string("BIN\0", 4) + buffer;
+    const std::string chunks =
+        word(uint32_t(json.size())) + "JSON" + json + word(uint32_t(buffer.size())) + std::string("BIN\0", 4) + buffer;
     const std::string file = "glTF" + word(2) + word(uint32_t(12 + chunks.size())) + chunks;
     save(path, file.data(), file.size());
 }
 
-/// A triangle with an index, texture coordinates, a sparse accessor, a texture, instances, a light, a camera and extensions.
+/// A triangle with an index, texture coordinates, a sparse accessor, a texture, instances, a light, a camera and
+/// extensions.
 constexpr const char* kRichScene = R"({
 "asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],
 "extensionsUsed":["KHR_lights_punctual","KHR_materials_ior","KHR_materials_transmission","EXT_mesh_gpu_instancing"],
@@ -140,16 +146,17 @@ void saveScenes(const fs::path& folder)
     const auto floats = [](const std::vector<float>& values)
     { return std::string(reinterpret_cast<const char*>(values.data()), 4 * values.size()); };
     const std::string triangle = floats({0, 0, 0, 1, 0, 0, 0, 1, 0});
-    saveGlb(folder / "plain.glb",
-            R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],)"
-            R"("meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],)"
-            R"("accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]}],)"
-            R"("bufferViews":[{"buffer":0,"byteLength":36}],"buffers":[{"byteLength":%BYTES%}]})",
-            triangle);
+    saveGlb(
+        folder / "plain.glb",
+        R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],)"
+        R"("meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],)"
+        R"("accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]}],)"
+        R"("bufferViews":[{"buffer":0,"byteLength":36}],"buffers":[{"byteLength":%BYTES%}]})",
+        triangle);
 
     const std::vector<uint8_t> png = encodePng(2, 2, 3, std::vector<uint8_t>{255, 0, 0, 0, 255, 0, 0, 0, 255, 9, 9, 9});
-    std::string buffer = triangle + floats({0, 1, 1, 1, 0, 0}) + std::string("\0\0\1\0\2\0\0\0", 8) + floats({0, 0, 0, 5, 0, 0}) +
-                         std::string("\0\2\0\0", 4) + floats({1, 2, 3, 4, 5, 6});
+    std::string buffer = triangle + floats({0, 1, 1, 1, 0, 0}) + std::string("\0\0\1\0\2\0\0\0", 8) +
+                         floats({0, 0, 0, 5, 0, 0}) + std::string("\0\2\0\0", 4) + floats({1, 2, 3, 4, 5, 6});
     buffer.append(png.begin(), png.end());
     buffer.resize((buffer.size() + 3) / 4 * 4);
     std::string json = kRichScene;
@@ -164,8 +171,10 @@ void saveSettings(const fs::path& folder)
     {
         std::string text = preset;
         for (const Knob& knob : knobs())
-            text += fmt::format("\n{}={}\n{}={}", knob.name, knob.choices.empty() ? fmt::format("{}", knob.least) : knob.choices.front().name, knob.name,
-                                knob.choices.empty() ? fmt::format("{}", knob.most) : knob.choices.back().name);
+            text +=
+                fmt::format("\n{}={}\n{}={}", knob.name,
+                            knob.choices.empty() ? fmt::format("{}", knob.least) : knob.choices.front().name, knob.name,
+                            knob.choices.empty() ? fmt::format("{}", knob.most) : knob.choices.back().name);
         save(folder / preset, text.data(), text.size());
     }
     const std::string wrong = "default\nphotons.count=-1\nexposure=nan\nexposure=1e999\n=\nterm=\n";
@@ -181,8 +190,11 @@ int main(int argc, char** argv)
         return int(ExitCode::kUsage);
     }
     const fs::path folder = argv[1];
-    const std::pair<const char*, void (*)(const fs::path&)> kinds[] = {
-        {"package", savePackages}, {"hdr", saveHdrs}, {"exr", saveExrs}, {"gltf", saveScenes}, {"settings", saveSettings}};
+    const std::pair<const char*, void (*)(const fs::path&)> kinds[] = {{"package", savePackages},
+                                                                       {"hdr", saveHdrs},
+                                                                       {"exr", saveExrs},
+                                                                       {"gltf", saveScenes},
+                                                                       {"settings", saveSettings}};
     for (const auto& [name, saveAll] : kinds)
     {
         std::error_code error;

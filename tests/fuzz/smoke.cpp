@@ -25,14 +25,25 @@ void change(Bytes& bytes, std::minstd_rand& random)
     const size_t at = random() % (random() % 2 == 0 ? bytes.size() : std::min<size_t>(bytes.size(), 512));
     switch (random() % 6)
     {
-    case 0: bytes[at] = uint8_t(random()); break;
-    case 1: bytes[at] ^= uint8_t(1u << random() % 8); break;
-    case 2: bytes[at] = kEdges[random() % std::size(kEdges)]; break;
-    case 3: bytes.resize(at); break;
-    case 4: bytes.erase(bytes.begin() + ptrdiff_t(at), bytes.begin() + ptrdiff_t(std::min(bytes.size(), at + 1 + random() % 8))); break;
+    case 0:
+        bytes[at] = uint8_t(random());
+        break;
+    case 1:
+        bytes[at] ^= uint8_t(1u << random() % 8);
+        break;
+    case 2:
+        bytes[at] = kEdges[random() % std::size(kEdges)];
+        break;
+    case 3:
+        bytes.resize(at);
+        break;
+    case 4:
+        bytes.erase(bytes.begin() + ptrdiff_t(at),
+                    bytes.begin() + ptrdiff_t(std::min(bytes.size(), at + 1 + random() % 8)));
+        break;
     case 5:
-        std::copy_n(bytes.begin() + ptrdiff_t(random() % bytes.size() / 2), std::min<size_t>(1 + random() % 16, (bytes.size() - at) / 2),
-                    bytes.begin() + ptrdiff_t(at));
+        std::copy_n(bytes.begin() + ptrdiff_t(random() % bytes.size() / 2),
+                    std::min<size_t>(1 + random() % 16, (bytes.size() - at) / 2), bytes.begin() + ptrdiff_t(at));
         break;
     }
 }

@@ -56,8 +56,9 @@ const Imath::Box2i kWindow = window(0, 0, 8, 4);
 TEST(ExrPicture, IsTheDisplayWindowWhateverIsStored)
 {
     const Imath::Box2i display = window(3, -2, 40, 20);
-    for (const Imath::Box2i& data : {display, window(3, -2, 40, 10), window(-30, -40, 100, 90), window(10, 5, 7, 3), window(20, 10, 90, 3),
-                                     window(-90, 3, 95, 1), window(500, 500, 4, 4), window(3, 40, 40, 5)})
+    for (const Imath::Box2i& data :
+         {display, window(3, -2, 40, 10), window(-30, -40, 100, 90), window(10, 5, 7, 3), window(20, 10, 90, 3),
+          window(-90, 3, 95, 1), window(500, 500, 4, 4), window(3, 40, 40, 5)})
         for (const bool tiled : {false, true})
         {
             ExrPart part{.data = data, .display = display, .channels = rgbChannels(pattern)};
@@ -87,20 +88,23 @@ TEST(ExrPicture, ReadsEveryLosslessCompression)
     const Imath::Box2i data = window(1, 2, 9, 600), display = window(0, 10, 12, 580);
     for (const Imf::Compression compression :
          {Imf::NO_COMPRESSION, Imf::RLE_COMPRESSION, Imf::ZIPS_COMPRESSION, Imf::ZIP_COMPRESSION, Imf::PIZ_COMPRESSION})
-        expectPattern(readBack(writeExr({{.data = data, .display = display, .channels = rgbChannels(pattern), .compression = compression}})),
-                      data, display);
+        expectPattern(
+            readBack(writeExr(
+                {{.data = data, .display = display, .channels = rgbChannels(pattern), .compression = compression}})),
+            data, display);
 }
 
 TEST(ExrPicture, ReadsLossyCompressionsToTheirAccuracy)
 {
     const Imath::Box2i box = window(0, 0, 64, 300);
-    for (const Imf::Compression compression : {Imf::PXR24_COMPRESSION, Imf::B44_COMPRESSION, Imf::B44A_COMPRESSION, Imf::DWAA_COMPRESSION,
-                                               Imf::DWAB_COMPRESSION})
+    for (const Imf::Compression compression : {Imf::PXR24_COMPRESSION, Imf::B44_COMPRESSION, Imf::B44A_COMPRESSION,
+                                               Imf::DWAA_COMPRESSION, Imf::DWAB_COMPRESSION})
     {
         auto channels = rgbChannels([](int, int y) { return 1 + float(y) / 300; });
         for (ExrChannel& channel : channels)
             channel.half = true; // of floats some of these keep everything
-        const Collected picture = readBack(writeExr({{.data = box, .display = box, .channels = channels, .compression = compression}}));
+        const Collected picture =
+            readBack(writeExr({{.data = box, .display = box, .channels = channels, .compression = compression}}));
         for (uint32_t y = 0; y < 300; ++y)
             ASSERT_NEAR(picture.at(5, y)[1] / (2 + float(y) / 150), 1, 0.02) << int(compression) << ", row " << y;
     }
@@ -116,7 +120,8 @@ TEST(ExrPicture, TakesTheChannelsWithoutALayerOrTheFirstLayerWithColour)
         return readBack(writeExr({part}));
     };
     const auto other = rgbChannels([](int, int) { return 9.0f; }, "a.diffuse.");
-    const std::vector<ExrChannel> depth{{.name = "Z", .value = pattern}, {.name = "A", .value = pattern}, {.name = "a.Z", .value = pattern}};
+    const std::vector<ExrChannel> depth{
+        {.name = "Z", .value = pattern}, {.name = "A", .value = pattern}, {.name = "a.Z", .value = pattern}};
 
     const Collected plain = withLayers({rgbChannels(pattern), depth});
     expectPattern(plain, kWindow, kWindow);
@@ -127,36 +132,44 @@ TEST(ExrPicture, TakesTheChannelsWithoutALayerOrTheFirstLayerWithColour)
     ASSERT_EQ(with_default.info.notes.size(), 1u);
     EXPECT_NE(with_default.info.notes[0].find("without a layer"), std::string::npos);
 
-    const Collected layered = withLayers({depth, rgbChannels([](int, int) { return 9.0f; }, "view.z."), rgbChannels(pattern, "view.combined.")});
+    const Collected layered = withLayers(
+        {depth, rgbChannels([](int, int) { return 9.0f; }, "view.z."), rgbChannels(pattern, "view.combined.")});
     expectPattern(layered, kWindow, kWindow);
     ASSERT_EQ(layered.info.notes.size(), 1u);
-    EXPECT_NE(layered.info.notes[0].find("of 2 with colour \"view.combined\""), std::string::npos) << layered.info.notes[0];
+    EXPECT_NE(layered.info.notes[0].find("of 2 with colour \"view.combined\""), std::string::npos)
+        << layered.info.notes[0];
 }
 
 TEST(ExrPicture, TakesTheFirstPartWithColour)
 {
-    const ExrPart depth{.data = kWindow, .display = kWindow, .channels = {{.name = "Z", .value = pattern}}, .name = "depth"};
+    const ExrPart depth{
+        .data = kWindow, .display = kWindow, .channels = {{.name = "Z", .value = pattern}}, .name = "depth"};
     ExrPart deep = depth;
     deep.deep = true;
     deep.name = "deep";
-    const ExrPart colour{.data = kWindow, .display = kWindow, .channels = rgbChannels(pattern),
-                         .tiles = Imf::TileDescription(4, 4, Imf::MIPMAP_LEVELS), .name = "beauty"};
+    const ExrPart colour{.data = kWindow,
+                         .display = kWindow,
+                         .channels = rgbChannels(pattern),
+                         .tiles = Imf::TileDescription(4, 4, Imf::MIPMAP_LEVELS),
+                         .name = "beauty"};
     ExrPart second = colour;
     second.channels = rgbChannels([](int, int) { return 9.0f; });
     second.name = "second";
     const Collected picture = readBack(writeExr({depth, deep, colour, second}));
     expectPattern(picture, kWindow, kWindow);
     ASSERT_EQ(picture.info.notes.size(), 1u);
-    EXPECT_NE(picture.info.notes[0].find("4 parts: part 2 is read, \"beauty\""), std::string::npos) << picture.info.notes[0];
+    EXPECT_NE(picture.info.notes[0].find("4 parts: part 2 is read, \"beauty\""), std::string::npos)
+        << picture.info.notes[0];
     expectRefused(writeExr({deep}), ExitCode::kUnsupported, "deep pixels");
 }
 
 TEST(ExrPicture, LuminanceAloneIsGrey)
 {
-    const Collected picture = readBack(writeExr({{.data = kWindow,
-                                                  .display = kWindow,
-                                                  .channels = {{.name = "Y", .value = pattern}},
-                                                  .chromaticities = Imf::Chromaticities({0.7f, 0.3f}, {0.2f, 0.8f}, {0.1f, 0.05f}, {0.4f, 0.4f})}}));
+    const Collected picture = readBack(
+        writeExr({{.data = kWindow,
+                   .display = kWindow,
+                   .channels = {{.name = "Y", .value = pattern}},
+                   .chromaticities = Imf::Chromaticities({0.7f, 0.3f}, {0.2f, 0.8f}, {0.1f, 0.05f}, {0.4f, 0.4f})}}));
     for (uint32_t c = 0; c < 3; ++c)
         EXPECT_EQ(picture.at(3, 2)[c], pattern(3, 2));
 }
@@ -168,11 +181,13 @@ TEST(ExrPicture, LuminanceAndChromaBecomeRgb)
     const auto blue = [](int x, int y) { return 3 - 0.125f * float(x) + 0.25f * float(y); };
     for (const int sampling : {1, 2})
     {
-        const ExrPart part{.data = window(4, 2, 20, 10),
-                           .display = window(4, 2, 19, 9), // of a pixel beyond the last sample none interpolates
-                           .channels = {{.name = "Y", .value = [](int, int) { return 2.0f; }},
-                                        {.name = "RY", .value = [&](int x, int y) { return red(x, y) / 2 - 1; }, .sampling = sampling},
-                                        {.name = "BY", .value = [&](int x, int y) { return blue(x, y) / 2 - 1; }, .sampling = sampling}}};
+        const ExrPart part{
+            .data = window(4, 2, 20, 10),
+            .display = window(4, 2, 19, 9), // of a pixel beyond the last sample none interpolates
+            .channels = {
+                {.name = "Y", .value = [](int, int) { return 2.0f; }},
+                {.name = "RY", .value = [&](int x, int y) { return red(x, y) / 2 - 1; }, .sampling = sampling},
+                {.name = "BY", .value = [&](int x, int y) { return blue(x, y) / 2 - 1; }, .sampling = sampling}}};
         const Collected picture = readBack(writeExr({part}));
         for (int y = 2; y < 11; ++y)
             for (int x = 4; x < 23; ++x)
@@ -180,7 +195,8 @@ TEST(ExrPicture, LuminanceAndChromaBecomeRgb)
                 const float* rgb = picture.at(uint32_t(x - 4), uint32_t(y - 2));
                 ASSERT_NEAR(rgb[0], red(x, y), 1e-5) << x << ", " << y;
                 ASSERT_NEAR(rgb[2], blue(x, y), 1e-5);
-                ASSERT_NEAR(0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2], 2, 5e-4); // weights of four digits, sums up to 10
+                ASSERT_NEAR(0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2], 2,
+                            5e-4); // weights of four digits, sums up to 10
             }
     }
 }
@@ -206,8 +222,11 @@ TEST(ExrPicture, ReadsWhatTheLibraryWritesAsLuminanceAndChroma)
 
 TEST(ExrPicture, ConvertsChromaticities)
 {
-    ExrPart part{.data = kWindow, .display = kWindow, .channels = rgbChannels([](int, int) { return 1.0f; }),
-                 .chromaticities = Imf::Chromaticities({0.708f, 0.292f}, {0.170f, 0.797f}, {0.131f, 0.046f}, {0.3127f, 0.3290f})};
+    ExrPart part{.data = kWindow,
+                 .display = kWindow,
+                 .channels = rgbChannels([](int, int) { return 1.0f; }),
+                 .chromaticities =
+                     Imf::Chromaticities({0.708f, 0.292f}, {0.170f, 0.797f}, {0.131f, 0.046f}, {0.3127f, 0.3290f})};
     const Collected picture = readBack(writeExr({part}));
     const float* rgb = picture.at(0, 0); // of (1, 2, 4), by the matrix of ITU-R BT.2407
     EXPECT_NEAR(rgb[0], 1.6605 - 2 * 0.5876 - 4 * 0.0728, 5e-4);
@@ -217,7 +236,10 @@ TEST(ExrPicture, ConvertsChromaticities)
 
 TEST(ExrPicture, KnowsCubesByTheirAttribute)
 {
-    ExrPart part{.data = window(2, 3, 4, 24), .display = window(0, 0, 3, 3), .channels = rgbChannels(pattern), .envmap = Imf::ENVMAP_CUBE};
+    ExrPart part{.data = window(2, 3, 4, 24),
+                 .display = window(0, 0, 3, 3),
+                 .channels = rgbChannels(pattern),
+                 .envmap = Imf::ENVMAP_CUBE};
     const Collected cube = readBack(writeExr({part}));
     EXPECT_TRUE(cube.info.cube);
     expectPattern(cube, part.data, part.data);
@@ -235,17 +257,20 @@ TEST(ExrPicture, KnowsCubesByTheirAttribute)
 TEST(ExrPicture, WhatHasNoColourOrNoSizeIsRefused)
 {
     expectRefused({}, ExitCode::kInvalid, "not an OpenEXR");
-    expectRefused(writeExr({{.data = kWindow, .display = kWindow, .channels = {{.name = "Z", .value = pattern}}}}), ExitCode::kInvalid,
-                  "channels Z");
-    expectRefused(writeExr({{.data = kWindow, .display = window(0, 0, 100000, 2), .channels = rgbChannels(pattern)}}), ExitCode::kUnsupported,
-                  "display window");
-    expectRefused(writeExr({{.data = window(1 << 25, 0, 2, 2), .display = kWindow, .channels = rgbChannels(pattern)}}), ExitCode::kInvalid,
-                  "from 0");
+    expectRefused(writeExr({{.data = kWindow, .display = kWindow, .channels = {{.name = "Z", .value = pattern}}}}),
+                  ExitCode::kInvalid, "channels Z");
+    expectRefused(writeExr({{.data = kWindow, .display = window(0, 0, 100000, 2), .channels = rgbChannels(pattern)}}),
+                  ExitCode::kUnsupported, "display window");
+    expectRefused(writeExr({{.data = window(1 << 25, 0, 2, 2), .display = kWindow, .channels = rgbChannels(pattern)}}),
+                  ExitCode::kInvalid, "from 0");
 }
 
 std::vector<std::byte> damageable(bool tiled, Imf::Compression compression)
 {
-    ExrPart part{.data = window(0, 0, 24, 18), .display = window(-1, 0, 24, 18), .channels = rgbChannels(pattern), .compression = compression};
+    ExrPart part{.data = window(0, 0, 24, 18),
+                 .display = window(-1, 0, 24, 18),
+                 .channels = rgbChannels(pattern),
+                 .compression = compression};
     if (tiled)
         part.tiles = Imf::TileDescription(8, 8, Imf::MIPMAP_LEVELS);
     return writeExr({part});
@@ -262,7 +287,8 @@ TEST(ExrPicture, ATruncatedFileIsRefusedOrWhole)
         for (size_t size = 0; size < whole.size(); size += 1 + size / 40, ++tried)
         {
             Collected collected;
-            const Status status = readExr(std::vector<std::byte>(whole.begin(), whole.begin() + ptrdiff_t(size)), collected);
+            const Status status =
+                readExr(std::vector<std::byte>(whole.begin(), whole.begin() + ptrdiff_t(size)), collected);
             refused += !status;
             ASSERT_TRUE(!status || (tiled && collected.image.rgb == picture.rgb)) << size << " of " << whole.size();
         }
@@ -275,7 +301,8 @@ TEST(ExrPicture, ChangedBytesGiveAnErrorOrAPicture)
     std::minstd_rand random(13);
     size_t read = 0, refused = 0;
     for (const bool tiled : {false, true})
-        for (const Imf::Compression compression : {Imf::NO_COMPRESSION, Imf::RLE_COMPRESSION, Imf::ZIP_COMPRESSION, Imf::PIZ_COMPRESSION})
+        for (const Imf::Compression compression :
+             {Imf::NO_COMPRESSION, Imf::RLE_COMPRESSION, Imf::ZIP_COMPRESSION, Imf::PIZ_COMPRESSION})
         {
             const std::vector<std::byte> whole = damageable(tiled, compression);
             for (int i = 0; i < 150; ++i)

@@ -22,7 +22,8 @@ Imf::Header headerOf(const ExrPart& part)
     Imf::Header header(part.display, part.data);
     header.compression() = part.deep ? Imf::ZIPS_COMPRESSION : part.compression;
     for (const ExrChannel& channel : part.channels)
-        header.channels().insert(channel.name, Imf::Channel(channel.half ? Imf::HALF : Imf::FLOAT, channel.sampling, channel.sampling));
+        header.channels().insert(
+            channel.name, Imf::Channel(channel.half ? Imf::HALF : Imf::FLOAT, channel.sampling, channel.sampling));
     if (part.tiles)
         header.setTileDescription(*part.tiles);
     if (part.chromaticities)
@@ -59,10 +60,12 @@ struct Planes
                     halfs[i].push_back(half(floats[i].back()));
                 }
             const size_t size = channel.half ? sizeof(half) : sizeof(float);
-            const auto first = channel.half ? std::bit_cast<uintptr_t>(halfs[i].data()) : std::bit_cast<uintptr_t>(floats[i].data());
-            const auto base = first - uintptr_t((int64_t(box.min.y / step) * columns + box.min.x / step) * int64_t(size));
-            frame.insert(channel.name, Imf::Slice(channel.half ? Imf::HALF : Imf::FLOAT, std::bit_cast<char*>(base), size,
-                                                  size * size_t(columns), step, step));
+            const auto first =
+                channel.half ? std::bit_cast<uintptr_t>(halfs[i].data()) : std::bit_cast<uintptr_t>(floats[i].data());
+            const auto base =
+                first - uintptr_t((int64_t(box.min.y / step) * columns + box.min.x / step) * int64_t(size));
+            frame.insert(channel.name, Imf::Slice(channel.half ? Imf::HALF : Imf::FLOAT, std::bit_cast<char*>(base),
+                                                  size, size * size_t(columns), step, step));
         }
     }
 };
@@ -74,7 +77,8 @@ void writeLevels(Imf::TiledOutputPart& out, const ExrPart& part)
         {
             if (!out.isValidLevel(lx, ly))
                 continue;
-            const Planes planes(part.channels, out.dataWindowForLevel(lx, ly), [&](const ExrChannel& channel, int x, int y)
+            const Planes planes(part.channels, out.dataWindowForLevel(lx, ly),
+                                [&](const ExrChannel& channel, int x, int y)
                                 { return lx == 0 && ly == 0 ? channel.value(x, y) : 77.0f; });
             out.setFrameBuffer(planes.frame);
             out.writeTiles(0, out.numXTiles(lx) - 1, 0, out.numYTiles(ly) - 1, lx, ly);
@@ -88,7 +92,10 @@ void writeEmptyLines(Imf::DeepScanLineOutputPart& out, const ExrPart& part)
     const std::vector<uint32_t> counts(size_t(columns * rows));
     const std::vector<float*> samples(counts.size());
     const auto base = [&](const void* first, int size)
-    { return std::bit_cast<char*>(std::bit_cast<uintptr_t>(first) - uintptr_t(int64_t(box.min.y * columns + box.min.x) * size)); };
+    {
+        return std::bit_cast<char*>(std::bit_cast<uintptr_t>(first) -
+                                    uintptr_t(int64_t(box.min.y * columns + box.min.x) * size));
+    };
     Imf::DeepFrameBuffer frame;
     frame.insertSampleCountSlice(Imf::Slice(Imf::UINT, base(counts.data(), 4), 4, size_t(4 * columns)));
     for (const ExrChannel& channel : part.channels)
@@ -123,7 +130,8 @@ std::vector<std::byte> writeExr(const std::vector<ExrPart>& parts)
             else
             {
                 Imf::OutputPart out(file, i);
-                const Planes planes(part.channels, part.data, [](const ExrChannel& channel, int x, int y) { return channel.value(x, y); });
+                const Planes planes(part.channels, part.data,
+                                    [](const ExrChannel& channel, int x, int y) { return channel.value(x, y); });
                 out.setFrameBuffer(planes.frame);
                 out.writePixels(part.data.max.y - part.data.min.y + 1);
             }

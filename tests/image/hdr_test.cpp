@@ -45,7 +45,8 @@ TEST(Hdr, MantissaTimesTwoToTheExponentMinus136)
 TEST(Hdr, EveryEncodingAndOrientationGivesTheSamePicture)
 {
     // Narrower than 8 pixels there are no new runs; 700 is wide enough for repetitions of more than 255 pixels.
-    for (const auto& [width, height] : {std::pair{700u, 40u}, {40u, 700u}, {9u, 8u}, {8u, 9u}, {1u, 1u}, {3u, 1u}, {7u, 5u}})
+    for (const auto& [width, height] :
+         {std::pair{700u, 40u}, {40u, 700u}, {9u, 8u}, {8u, 9u}, {1u, 1u}, {3u, 1u}, {7u, 5u}})
     {
         const ImageF image = exactHdrImage(width, height, width);
         for (const char* orientation : {"-Y +X", "+Y +X", "-Y -X", "+Y -X", "+X -Y", "-X -Y", "+X +Y", "-X +Y"})
@@ -57,7 +58,8 @@ TEST(Hdr, EveryEncodingAndOrientationGivesTheSamePicture)
                 const ImageF back = readBack(writeHdr(image, {.runs = runs, .orientation = orientation}));
                 ASSERT_EQ(back.width, width);
                 ASSERT_EQ(back.height, height);
-                ASSERT_EQ(back.rgb, image.rgb) << orientation << ", runs " << int(runs) << ", " << width << " x " << height;
+                ASSERT_EQ(back.rgb, image.rgb)
+                    << orientation << ", runs " << int(runs) << ", " << width << " x " << height;
             }
     }
 }
@@ -82,7 +84,9 @@ TEST(Hdr, HeadersOfManyKindsAreRead)
 {
     const ImageF image = exactHdrImage(16, 8, 1);
     for (const HdrStyle& style :
-         {HdrStyle{.magic = "#?RGBE"}, {.lines = ""}, {.lines = "# " + std::string(5000, 'x') + "\nVIEW= -vta\nGAMMA=1\n"},
+         {HdrStyle{.magic = "#?RGBE"},
+          {.lines = ""},
+          {.lines = "# " + std::string(5000, 'x') + "\nVIEW= -vta\nGAMMA=1\n"},
           {.lines = "FORMAT= 32-bit_rle_rgbe\nPRIMARIES=0 0 0 0 0 0 0 0\n"},
           {.lines = "pfilt -x 4\n\tEXPOSURE=7\nSOFTWARE=a = b\n"}, // what is indented belongs to another picture
           {.magic = "#?RADIANCE\r", .lines = "FORMAT=32-bit_rle_rgbe\r\n\r"},
@@ -94,7 +98,8 @@ TEST(Hdr, ExposuresAndColorCorrectionsMultiplyAndAreDividedOut)
 {
     const ImageF image = exactHdrImage(16, 8, 2);
     const ImageF back = readBack(writeHdr(
-        image, {.lines = "EXPOSURE=2\nFORMAT=32-bit_rle_rgbe\nEXPOSURE= 4.0\nCOLORCORR= 1 2 0.5\nCOLORCORR=+2e0 1 1\n"}));
+        image,
+        {.lines = "EXPOSURE=2\nFORMAT=32-bit_rle_rgbe\nEXPOSURE= 4.0\nCOLORCORR= 1 2 0.5\nCOLORCORR=+2e0 1 1\n"}));
     for (size_t i = 0; i < image.rgb.size(); i += 3)
     {
         ASSERT_EQ(back.rgb[i], image.rgb[i] / 16);
@@ -130,18 +135,21 @@ TEST(Hdr, WhatCannotBeIsRefusedWithASentence)
     expectRefused(bytesOf("P6 1 1 255"), ExitCode::kInvalid, "no Radiance");
     expectRefused({}, ExitCode::kInvalid, "no Radiance");
     expectRefused(bytesOf("#?RADIANCE\nFORMAT=32-bit"), ExitCode::kInvalid, "within its header");
-    expectRefused(bytesOf("#?RADIANCE\nFORMAT=32-bit_rle_spectra\n\n-Y 1 +X 1\n" + pixel), ExitCode::kUnsupported, "spectra");
+    expectRefused(bytesOf("#?RADIANCE\nFORMAT=32-bit_rle_spectra\n\n-Y 1 +X 1\n" + pixel), ExitCode::kUnsupported,
+                  "spectra");
     expectRefused(bytesOf("#?RADIANCE\nEXPOSURE=0\n\n-Y 1 +X 1\n" + pixel), ExitCode::kInvalid, "EXPOSURE=0");
     expectRefused(bytesOf("#?RADIANCE\nEXPOSURE=nan\n\n-Y 1 +X 1\n" + pixel), ExitCode::kInvalid, "EXPOSURE=nan");
     expectRefused(bytesOf("#?RADIANCE\nCOLORCORR=1 2\n\n-Y 1 +X 1\n" + pixel), ExitCode::kInvalid, "COLORCORR=1 2");
-    for (const char* size : {"-Y 1 -Y 1", "-Y 1", "-Y 1 +X 1 5", "Y 1 X 1", "-Y one +X 1", "", "-Y 1 *X 1", "-Z 1 +X 1"})
+    for (const char* size :
+         {"-Y 1 -Y 1", "-Y 1", "-Y 1 +X 1 5", "Y 1 X 1", "-Y one +X 1", "", "-Y 1 *X 1", "-Z 1 +X 1"})
         expectRefused(bytesOf(kHead + size + "\n" + pixel), ExitCode::kInvalid, "where its size should be");
     expectRefused(bytesOf(kHead + "-Y 0 +X 1\n" + pixel), ExitCode::kInvalid, "side of 0");
     expectRefused(bytesOf(kHead + "-Y -5 +X 1\n" + pixel), ExitCode::kInvalid, "side of -5");
     expectRefused(bytesOf(kHead + "-Y 100000 +X 1\n" + pixel), ExitCode::kUnsupported, "side of 100000");
     expectRefused(bytesOf(kHead + "-Y 99999999999999999999 +X 1\n" + pixel), ExitCode::kUnsupported, "side of 99999");
     expectRefused(bytesOf(kHead + "-Y 65536 +X 65536\n" + pixel), ExitCode::kUnsupported, "pixels");
-    expectRefused(bytesOf(kHead + "-Y 60000 +X 8000\n" + pixel), ExitCode::kInvalid, "cut off"); // before memory is taken
+    expectRefused(bytesOf(kHead + "-Y 60000 +X 8000\n" + pixel), ExitCode::kInvalid,
+                  "cut off"); // before memory is taken
 }
 
 TEST(Hdr, BadRunsAreRefused)

@@ -73,14 +73,15 @@ std::vector<std::byte> writeHdr(const ImageF& image, const HdrStyle& style)
     const uint32_t line_count = columns ? image.width : image.height, pixels = columns ? image.height : image.width;
     // The first line is the top row and the leftmost column where its sign is - for Y and + for X.
     const auto isReversed = [](const std::string& axis) { return axis == "+Y" || axis == "-X"; };
-    std::string out = style.magic + "\n" + style.lines + "\n" + first + " " + std::to_string(line_count) + " " + second + " " +
-                      std::to_string(pixels) + "\n";
+    std::string out = style.magic + "\n" + style.lines + "\n" + first + " " + std::to_string(line_count) + " " +
+                      second + " " + std::to_string(pixels) + "\n";
     for (uint32_t i = 0; i < line_count; ++i)
     {
         std::vector<Rgbe> line;
         for (uint32_t k = 0; k < pixels; ++k)
         {
-            const uint32_t across = isReversed(first) ? line_count - 1 - i : i, along = isReversed(second) ? pixels - 1 - k : k;
+            const uint32_t across = isReversed(first) ? line_count - 1 - i : i,
+                           along = isReversed(second) ? pixels - 1 - k : k;
             const uint32_t x = columns ? across : along, y = columns ? along : across;
             line.push_back(encode(&image.rgb[3 * (size_t(y) * image.width + x)]));
         }
@@ -100,7 +101,8 @@ ImageF exactHdrImage(uint32_t width, uint32_t height, uint32_t seed)
     while (image.rgb.size() < 3 * image.pixelCount())
     {
         const float scale = std::ldexp(1.0f, int(random() % 24) - 12);
-        const std::array<float, 3> rgb{scale * float(128 + random() % 128), scale * float(random() % 128), scale * float(random() % 128)};
+        const std::array<float, 3> rgb{scale * float(128 + random() % 128), scale * float(random() % 128),
+                                       scale * float(random() % 128)};
         const size_t run = random() % 3 == 0 ? 1 + random() % 400 : 1;
         for (size_t i = 0; i < run && image.rgb.size() < 3 * image.pixelCount(); ++i)
             image.rgb.insert(image.rgb.end(), rgb.begin(), rgb.end());

@@ -43,7 +43,8 @@ TEST(Primaries, AcesCgToRec709AdaptsItsWhite)
 TEST(Primaries, XyzIsNotAdapted)
 {
     // The inverse of the standard's matrix.
-    expectNear(toRec709(kXyzPrimaries), {3.2410, -1.5374, -0.4986, -0.9692, 1.8760, 0.0416, 0.0556, -0.2040, 1.0570}, 1e-3);
+    expectNear(toRec709(kXyzPrimaries), {3.2410, -1.5374, -0.4986, -0.9692, 1.8760, 0.0416, 0.0556, -0.2040, 1.0570},
+               1e-3);
 }
 
 TEST(Primaries, WhatSpansNoColoursIsRefused)
@@ -51,6 +52,7 @@ TEST(Primaries, WhatSpansNoColoursIsRefused)
     EXPECT_FALSE(toRec709(Primaries{{0, 0}, {0, 0}, {0, 0}, {0, 0}}));
     EXPECT_FALSE(toRec709(Primaries{{0.1, 0.1}, {0.2, 0.2}, {0.3, 0.3}, {0.3, 0.3}}));
     EXPECT_FALSE(toRec709(Primaries{{0.64, 0.33}, {0.3, 0.6}, {0.15, 0.06}, {0.3, 0}}));
-    EXPECT_FALSE(toRec709(Primaries{{std::numeric_limits<double>::quiet_NaN(), 0.33}, {0.3, 0.6}, {0.15, 0.06}, {0.3, 0.3}}));
+    EXPECT_FALSE(
+        toRec709(Primaries{{std::numeric_limits<double>::quiet_NaN(), 0.33}, {0.3, 0.6}, {0.15, 0.06}, {0.3, 0.3}}));
 }
 } // namespace
