@@ -1,9 +1,11 @@
 #include "compiler/build_bvh.h"
 
 #include "compiler/bvh_tree.h"
+#include "compiler/parallel.h"
 #include "format/check.h"
 
 #include <embree3/rtcore.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <memory>
@@ -176,7 +178,7 @@ Bvh buildBvh(const WorldMesh& mesh, std::span<const uint32_t> triangle_flags)
 {
     check(!mesh.triangles.empty() && triangle_flags.size() == mesh.triangles.size(), "{} triangles, {} flags",
           mesh.triangles.size(), triangle_flags.size());
-    const Device device(rtcNewDevice(nullptr));
+    const Device device(rtcNewDevice(fmt::format("threads={}", thread_limit).c_str()));
     check(device, "Embree error {}", int(rtcGetDeviceError(nullptr)));
     const EmbreeBvh memory(rtcNewBVH(device.get()));
     const Source source = gatherSource(mesh, triangle_flags);

@@ -2,13 +2,16 @@
 
 #include "compiler/build_bvh.h"
 #include "compiler/build_lights.h"
+#include "compiler/cached_bvh.h"
 #include "compiler/camera_views.h"
 #include "compiler/environment.h"
 #include "compiler/flatten.h"
 #include "compiler/gltf_material.h"
 #include "compiler/import_gltf.h"
 #include "compiler/package_meta.h"
+#include "compiler/parallel.h"
 #include "compiler/texture_pages.h"
+#include "compiler/up_to_date.h"
 #include "compiler/world_frame.h"
 
 #include <fmt/format.h>
@@ -17,6 +20,7 @@
 #include <chrono>
 #include <new>
 
+#include <sys/resource.h>
 #include <unistd.h>
 
 namespace
@@ -148,8 +152,23 @@ writePackage(const CompileOptions& options, const SceneData& scene, const Bvh& b
     return package::write(options.output, chunks, {options.zstd_level});
 }
 
-void summarize(const SceneData& scene, CompileReport& report)
+uint64_t peakBytes()
 {
+    rusage usage = {};
+    getrusage(RUSAGE_SELF, &usage);
+    return uint64_t(usage.ru_maxrss) * 1024;
+}
+
+void summarize(const CompileOptions& options, const SceneData& scene, CompileReport& report)
+{
+    if (options.cache != nullptr)
+    {
+        report.cache_hits = options.cache->hits();
+        report.cache_misses = options.cache->misses();
+    }
+    report.threads = thread_limit;
+    report.peak_bytes = peakBytes();
+    report.package_hash = packageHash(options.output);
     for (const PunctualLight& light : scene.lights)
         ++(light.kind == gpu::kLightPoint  ? report.point_lights
            : light.kind == gpu::kLightSpot ? report.spot_lights
@@ -161,6 +180,8 @@ void summarize(const SceneData& scene, CompileReport& report)
 
 Result<CompileReport> runPipeline(const CompileOptions& options)
 {
+    const Cache closed;
+    const Cache& cache = options.cache != nullptr ? *options.cache : closed;
     CompileReport report;
     Stopwatch watch(options, report.stages);
 
@@ -193,6 +214,10 @@ Result<CompileReport> runPipeline(const CompileOptions& options)
     watch.stage("mesh",
                 fmt::format("{} triangles, {} vertices", scene.mesh.triangles.size(), scene.mesh.positions.size()));
 
+    // Before it is read: where it changes meanwhile, the next run finds another content than this.
+    std::optional<ContentHash> environment_content;
+    if (options.environment)
+        environment_content = contentOf(*options.environment);
     if (const Status status = addViewsAndLights(options, scene); !status)
         return status.error();
     const LightTables lights = lightsOrDefault(options, scene);
@@ -203,22 +228,23 @@ Result<CompileReport> runPipeline(const CompileOptions& options)
     watch.stage("lights",
                 fmt::format("{} lights, {} caustic targets", lights.lights.size(), lights.caustic_targets.size()));
 
-    const Bvh bvh = buildBvh(scene.mesh, triangleFlags(scene));
+    const Bvh bvh = cachedBvh(cache, scene.mesh, triangleFlags(scene));
     watch.stage("bvh", fmt::format("{} nodes, SAH cost {:.1f}, depth {}", bvh.nodes.size(), bvh.sah_cost, bvh.depth));
 
-    const TexturePages textures = buildTexturePages(scene.images, scene.texture_uses);
+    const TexturePages textures = buildTexturePages(scene.images, scene.texture_uses, cache);
     if (textures.resized > 0)
         scene.warnings.push_back(fmt::format("{} images were resized so that {} texture pages suffice",
                                              textures.resized, gpu::kTexturePageCount));
     watch.stage("textures", fmt::format("{} images, {} pages", scene.images.size(), textures.pages.size()));
 
     report.meta = makeMeta(options, scene, bvh, lights, textures, sky);
+    noteInputs(file->files->list(), environment_content, *report.meta.provenance);
     auto chunks = writePackage(options, scene, bvh, lights, textures, sky, report.meta);
     if (!chunks)
         return chunks.error().about(options.output.string());
     report.chunks = std::move(*chunks);
     watch.stage("write", options.output.filename().string());
-    summarize(scene, report);
+    summarize(options, scene, report);
     report.total_seconds = watch.total();
     return report;
 }

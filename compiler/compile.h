@@ -1,5 +1,7 @@
 // The compiler's pipeline: one glTF scene in, one package out.
 #pragma once
+#include "compiler/cache.h"
+#include "compiler/input_files.h"
 #include "compiler/scene_data.h"
 #include "format/package_generated.h"
 #include "format/package_write.h"
@@ -21,6 +23,7 @@ struct CompileOptions
     bool default_light = true;       // give a scene without any light a sky and a sun
     int zstd_level = 0;              // 0: no compression
     std::vector<std::string> text{}; // the options as given, for the package's provenance
+    const Cache* cache = nullptr;    // where costly results are looked for and kept; null: nowhere
     std::function<void(double seconds, const std::string& line)> progress{}; // after each stage; may be empty
 };
 
@@ -43,6 +46,11 @@ struct CompileReport
     std::vector<package::WrittenChunk> chunks;
     std::vector<CompileStage> stages;
     double total_seconds = 0;
+    uint64_t package_hash = 0; // of the header, and by way of it of the whole package
+    unsigned threads = 0;      // that were allowed
+    uint64_t peak_bytes = 0;   // memory of the whole process so far
+    uint32_t cache_hits = 0;
+    uint32_t cache_misses = 0;
 };
 
 /// Compiles `options.input` and writes `options.output`, all or nothing. Equal input and options give equal bytes.

@@ -151,7 +151,7 @@ bool isMeshoptFallback(const json& buffer)
 
 /// Reads buffer `i`, exactly byteLength bytes of it.
 Result<Bytes> readBuffer(const json& buffer, size_t i, const std::optional<ByteView>& bin,
-                         const std::filesystem::path& folder)
+                         InputFiles& files)
 {
     const auto length = buffer.find("byteLength");
     if (length == buffer.end() || !length->is_number_unsigned() || *length == 0u)
@@ -176,7 +176,7 @@ Result<Bytes> readBuffer(const json& buffer, size_t i, const std::optional<ByteV
     }
     if (!uri->is_string())
         return Error{ExitCode::kInvalid, fmt::format("a string is expected (/buffers/{}/uri)", i)};
-    Result<Bytes> data = readUri(uri->get<std::string>(), folder);
+    Result<Bytes> data = readUri(uri->get<std::string>(), files);
     if (!data)
         return Error{data.error().code, fmt::format("{} (/buffers/{})", data.error().message, i)};
     if (data->size() < bytes)
@@ -257,7 +257,7 @@ struct LoadedBuffers
 };
 
 Result<LoadedBuffers> takeBuffers(json& document, const std::optional<ByteView>& bin,
-                                  const std::filesystem::path& folder)
+                                  InputFiles& files)
 {
     LoadedBuffers loaded;
     if (!document.contains("buffers"))
@@ -265,7 +265,7 @@ Result<LoadedBuffers> takeBuffers(json& document, const std::optional<ByteView>&
     json& list = document["buffers"];
     for (size_t i = 0; i < list.size(); ++i)
     {
-        Result<Bytes> bytes = readBuffer(list[i], i, bin, folder);
+        Result<Bytes> bytes = readBuffer(list[i], i, bin, files);
         if (!bytes)
             return bytes.error();
         loaded.buffers.push_back(std::move(*bytes));
@@ -324,7 +324,9 @@ Result<Bytes> readFile(const std::filesystem::path& path)
 
 Result<GltfFile> readGltf(const std::filesystem::path& path)
 {
-    const Result<Bytes> bytes = readFile(path);
+    GltfFile file;
+    file.files = std::make_shared<InputFiles>(path.parent_path());
+    const Result<Bytes> bytes = file.files->read(path.filename().string());
     if (!bytes)
         return bytes.error();
     const std::string_view text(reinterpret_cast<const char*>(bytes->data()), bytes->size());
@@ -344,8 +346,6 @@ Result<GltfFile> readGltf(const std::filesystem::path& path)
     if (const Status status = checkShape(*document); !status)
         return status.error();
 
-    GltfFile file;
-    file.folder = path.parent_path();
     if (const Status status = checkExtensions(*document, file.warnings); !status)
         return status.error();
     if (document->contains("animations") || document->contains("skins"))
@@ -353,7 +353,7 @@ Result<GltfFile> readGltf(const std::filesystem::path& path)
     document->erase("animations");
     document->erase("skins");
 
-    Result<LoadedBuffers> buffers = takeBuffers(*document, container->bin, file.folder);
+    Result<LoadedBuffers> buffers = takeBuffers(*document, container->bin, *file.files);
     if (!buffers)
         return buffers.error();
     Result<std::vector<GltfImage>> images = takeImages(*document);

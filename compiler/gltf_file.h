@@ -1,5 +1,6 @@
 // Opens .gltf and .glb files: reads every byte the scene refers to and hands back tinygltf's model of it.
 #pragma once
+#include "compiler/input_files.h"
 #include "format/result.h"
 
 #include <cstddef>
@@ -23,7 +24,7 @@ struct GltfImage
 
 struct GltfFile
 {
-    std::filesystem::path folder;      // relative URIs start here
+    std::shared_ptr<InputFiles> files; // relative URIs start in its folder; knows all that were read
     tinygltf::Model model;             // buffers loaded; indices between its parts are unchecked; no images
     std::vector<GltfImage> images;     // as in the file
     std::vector<std::string> warnings; // full sentences
@@ -33,8 +34,8 @@ struct GltfFile
 ///         kUnsupported for another glTF version, an unknown required extension or one that cannot be decoded
 Result<GltfFile> readGltf(const std::filesystem::path& path);
 
-/// The bytes behind a `uri` of the file: base64 data or a file in `folder`.
-Result<std::vector<unsigned char>> readUri(const std::string& uri, const std::filesystem::path& folder);
+/// The bytes behind a `uri` of the file: base64 data or one of `files`.
+Result<std::vector<unsigned char>> readUri(const std::string& uri, InputFiles& files);
 
 /// A whole regular file, or kIo with the system's reason.
 Result<std::vector<unsigned char>> readFile(const std::filesystem::path& path);

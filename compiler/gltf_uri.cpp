@@ -63,7 +63,7 @@ std::string decodePercent(std::string_view text)
 }
 } // namespace
 
-Result<std::vector<unsigned char>> readUri(const std::string& uri, const std::filesystem::path& folder)
+Result<std::vector<unsigned char>> readUri(const std::string& uri, InputFiles& files)
 {
     if (uri.starts_with("data:"))
     {
@@ -78,7 +78,7 @@ Result<std::vector<unsigned char>> readUri(const std::string& uri, const std::fi
     const std::string name = decodePercent(uri);
     if (name.empty() || name.find('\0') != std::string::npos)
         return Error{ExitCode::kInvalid, "a URI is empty or holds a zero character"};
-    return readFile(folder / name);
+    return files.read(name);
 }
 
 Result<ByteView> viewBytes(const tinygltf::Model& model, int buffer_view)

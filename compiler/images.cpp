@@ -27,7 +27,7 @@ Result<ByteView> imageBytes(const GltfFile& file, const GltfImage& image, Bytes&
 {
     if (image.uri.empty())
         return viewBytes(file.model, image.buffer_view);
-    Result<Bytes> bytes = readUri(image.uri, file.folder);
+    Result<Bytes> bytes = readUri(image.uri, *file.files);
     if (!bytes)
         return bytes.error();
     storage = std::move(*bytes);

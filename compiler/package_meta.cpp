@@ -103,6 +103,21 @@ fb::MetaT makeMeta(const CompileOptions& options, const SceneData& scene, const 
     return meta;
 }
 
+void noteInputs(const std::vector<InputFile>& files, const std::optional<ContentHash>& environment,
+                fb::ProvenanceT& provenance)
+{
+    const auto content = [](const std::optional<ContentHash>& hash)
+    { return hash ? std::make_unique<fb::Hash128>(hash->low, hash->high) : nullptr; };
+    provenance.compiler = compilerHash();
+    for (const InputFile& file : files)
+    {
+        auto& input = provenance.inputs.emplace_back(std::make_unique<fb::InputFileT>());
+        input->name = file.name;
+        input->content = content(file.content);
+    }
+    provenance.environment_content = content(environment);
+}
+
 std::vector<uint8_t> encodeMeta(const fb::MetaT& meta)
 {
     flatbuffers::FlatBufferBuilder builder;

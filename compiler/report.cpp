@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include <array>
+#include <fstream>
 #include <iterator>
 
 namespace
@@ -14,6 +15,11 @@ std::string chunkLabel(const package::WrittenChunk& chunk)
 {
     return chunk.id == package::kTexturePageChunk ? fmt::format("{} {}", package::chunkName(chunk.id), chunk.index)
                                                   : package::chunkName(chunk.id);
+}
+
+std::string hashText(uint64_t hash)
+{
+    return fmt::format("{:016x}", hash);
 }
 
 std::array<double, 3> originOf(const lumicut::fb::MetaT& meta)
@@ -63,6 +69,8 @@ std::string summaryText(const CompileReport& report, const CompileOptions& optio
     for (const CompileStage& stage : report.stages)
         fmt::format_to(out, " {} {:.2f}", stage.name, stage.seconds);
     fmt::format_to(out, "\n");
+    if (options.cache != nullptr)
+        fmt::format_to(out, "  cache      {} found, {} made\n", report.cache_hits, report.cache_misses);
     return text;
 }
 
@@ -74,6 +82,7 @@ std::string reportJson(const CompileReport& report, const CompileOptions& option
     json["tool_version"] = LUMICUT_VERSION;
     json["source"] = options.input.filename().string();
     json["package"] = options.output.filename().string();
+    json["package_hash"] = hashText(report.package_hash);
     json["options"] = report.meta.provenance->options;
     json["triangles"] = s.triangles;
     json["vertices"] = s.vertices;
@@ -117,6 +126,19 @@ std::string reportJson(const CompileReport& report, const CompileOptions& option
     for (const CompileStage& stage : report.stages)
         json["stages"].push_back({{"name", stage.name}, {"seconds", stage.seconds}});
     json["total_seconds"] = report.total_seconds;
+    json["threads"] = report.threads;
+    json["peak_bytes"] = report.peak_bytes;
+    json["cache"] = {{"found", report.cache_hits}, {"made", report.cache_misses}};
+    json["inputs"] = ordered_json::array();
+    for (const auto& input : report.meta.provenance->inputs)
+        json["inputs"].push_back({{"name", input->name}, {"found", input->content != nullptr}});
     json["warnings"] = report.meta.provenance->warnings;
     return json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+}
+
+bool isReportOf(const std::filesystem::path& report, uint64_t package_hash)
+{
+    std::ifstream stream(report, std::ios::binary);
+    const nlohmann::json json = nlohmann::json::parse(stream, nullptr, false);
+    return json.is_object() && json.value("package_hash", nlohmann::json()) == hashText(package_hash);
 }

@@ -7,3 +7,6 @@ std::string summaryText(const CompileReport& report, const CompileOptions& optio
 
 /// JSON, schema "lumicut-compile-report/1": fields are only ever added.
 std::string reportJson(const CompileReport& report, const CompileOptions& options);
+
+/// Whether the file `report` is the report of the package with this hash.
+bool isReportOf(const std::filesystem::path& report, uint64_t package_hash);

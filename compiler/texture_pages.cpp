@@ -139,26 +139,44 @@ TexturePage emptyPage(const PageKey& key, uint32_t layers)
     return page;
 }
 
-/// Writes one layer of all levels.
-void fillLayer(TexturePage& page, uint32_t layer, TextureImage& image)
+/// What one image becomes: all its levels, the largest first.
+std::vector<uint8_t> layerLevels(const TexturePage& page, const TextureImage& image)
 {
-    if (image.width != page.width || image.height != page.height)
-        image.texels = resample(image, page.width, page.height);
-    uint8_t* level = page.texels.data(); // of layer 0
-    uint32_t width = page.width;
-    uint32_t height = page.height;
-    std::memcpy(level + image.texels.size() * layer, image.texels.data(), image.texels.size());
-    for (uint32_t i = 1; i < page.levels; ++i)
+    std::vector<uint8_t> levels(page.texels.size() / page.layers);
+    const bool fits = image.width == page.width && image.height == page.height;
+    const std::vector<uint8_t> resampled = fits ? std::vector<uint8_t>() : resample(image, page.width, page.height);
+    const std::vector<uint8_t>& largest = fits ? image.texels : resampled;
+    std::memcpy(levels.data(), largest.data(), largest.size());
+    uint8_t* level = levels.data();
+    for (uint32_t i = 1, w = page.width, h = page.height; i < page.levels; ++i, w = half(w), h = half(h))
     {
-        const size_t bytes = size_t(4) * width * height;
-        const size_t smaller_bytes = size_t(4) * half(width) * half(height);
-        uint8_t* smaller = level + bytes * page.layers;
-        halveImage(level + bytes * layer, width, height, page.srgb, smaller + smaller_bytes * layer);
+        uint8_t* const smaller = level + size_t(4) * w * h;
+        halveImage(level, w, h, page.srgb, smaller);
         level = smaller;
-        width = half(width);
-        height = half(height);
     }
-    image.texels = {};
+    return levels;
+}
+
+ContentHash layerKey(const TexturePage& page, const TextureImage& image)
+{
+    return Hasher("texture")
+        .values(image.width, image.height, page.width, page.height, page.levels, uint32_t(page.srgb))
+        .array(image.texels)
+        .finish();
+}
+
+/// Puts the levels of one layer between those of the others.
+void placeLayer(TexturePage& page, uint32_t layer, const std::vector<uint8_t>& levels)
+{
+    const uint8_t* from = levels.data();
+    uint8_t* level = page.texels.data(); // of layer 0
+    for (uint32_t i = 0, w = page.width, h = page.height; i < page.levels; ++i, w = half(w), h = half(h))
+    {
+        const size_t bytes = size_t(4) * w * h;
+        std::memcpy(level + bytes * layer, from, bytes);
+        from += bytes;
+        level += bytes * page.layers;
+    }
 }
 } // namespace
 
@@ -191,7 +209,8 @@ void halveImage(const uint8_t* from, uint32_t width, uint32_t height, bool srgb,
     }
 }
 
-TexturePages buildTexturePages(std::vector<TextureImage>& images, const std::vector<TextureUse>& uses)
+TexturePages buildTexturePages(std::vector<TextureImage>& images, const std::vector<TextureUse>& uses,
+                               const Cache& cache)
 {
     Groups groups;
     for (uint32_t i = 0; i < images.size(); ++i)
@@ -215,7 +234,18 @@ TexturePages buildTexturePages(std::vector<TextureImage>& images, const std::vec
         }
         result.pages.push_back(emptyPage(key, uint32_t(members.size())));
     }
-    parallelFor(images.size(), [&](size_t i) { fillLayer(result.pages[places[i].page], places[i].layer, images[i]); });
+    parallelFor(images.size(),
+                [&](size_t i)
+                {
+                    TexturePage& page = result.pages[places[i].page];
+                    const auto make = [&] { return layerLevels(page, images[i]); };
+                    std::vector<uint8_t> levels =
+                        cache.isOpen() ? cache.through(layerKey(page, images[i]), make) : make();
+                    if (levels.size() != page.texels.size() / page.layers)
+                        levels = make(); // a cached result of another size was not made by layerLevels()
+                    images[i].texels = {};
+                    placeLayer(page, places[i].layer, levels);
+                });
     for (const TextureUse& use : uses)
         result.refs.push_back({places[use.image].page, places[use.image].layer, use.sampling, use.u_row, use.v_row});
     return result;

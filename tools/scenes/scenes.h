@@ -52,3 +52,6 @@ GltfWriter flippedScene(bool against);
 
 /// A floor in dim sun; 30 m above it, with or without, a lamp 2 mm over an opaque shield that hides it from the floor.
 GltfWriter shieldScene(bool lamp);
+
+/// About as many triangles as asked for, 1000 and more: rolling ground with boulders. Not among allScenes().
+GltfWriter terrainScene(uint32_t triangles);
