@@ -8,6 +8,7 @@
 #include "compiler/flatten.h"
 #include "compiler/gltf_material.h"
 #include "compiler/import_gltf.h"
+#include "compiler/large_memory.h"
 #include "compiler/package_meta.h"
 #include "compiler/parallel.h"
 #include "compiler/texture_pages.h"
@@ -110,9 +111,10 @@ std::vector<uint32_t> triangleFlags(const SceneData& scene)
 
 std::vector<gpu::Triangle> packTriangles(const SceneData& scene, const LightTables& lights)
 {
-    std::vector<gpu::Triangle> triangles(scene.mesh.triangles.size());
-    for (size_t i = 0; i < triangles.size(); ++i)
-        triangles[i] = {scene.mesh.triangles[i], lights.triangle_lights[i]};
+    std::vector<gpu::Triangle> triangles;
+    reserveLarge(triangles, scene.mesh.triangles.size());
+    for (size_t i = 0; i < scene.mesh.triangles.size(); ++i)
+        triangles.push_back({scene.mesh.triangles[i], lights.triangle_lights[i]});
     return triangles;
 }
 
