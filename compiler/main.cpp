@@ -4,8 +4,8 @@
 #include "compiler/linear.h"
 #include "compiler/parallel.h"
 #include "format/temporary_file.h"
+#include "tools/cli/documentation.h"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <charconv>
@@ -217,6 +217,7 @@ int main(int argc, char** argv)
                "first that fails decides, and the others are compiled.");
     Arguments arguments;
     declare(app, arguments);
+    addDocumentation(app);
     try
     {
         app.parse(argc, argv);

@@ -69,6 +69,7 @@ std::string summaryText(const CompileReport& report, const CompileOptions& optio
     for (const CompileStage& stage : report.stages)
         fmt::format_to(out, " {} {:.2f}", stage.name, stage.seconds);
     fmt::format_to(out, "\n");
+    fmt::format_to(out, "  memory     {} MiB at most, {} threads\n", report.peak_bytes >> 20, report.threads);
     if (options.cache != nullptr)
         fmt::format_to(out, "  cache      {} found, {} made\n", report.cache_hits, report.cache_misses);
     return text;

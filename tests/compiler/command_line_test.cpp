@@ -1,34 +1,14 @@
 #include "compiler/camera_views.h"
 #include "tests/compiler/gltf_builder.h"
+#include "tests/compiler/program_run.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <sys/wait.h>
-
-#include <array>
-#include <cstdio>
+#include <algorithm>
 
 namespace
 {
-struct ProgramRun
-{
-    int code = -1;
-    std::string output; // stdout and stderr
-};
-
-ProgramRun run(const std::string& arguments)
-{
-    ProgramRun result;
-    FILE* pipe = popen(fmt::format("'{}' {} 2>&1", LUMICUT_COMPILE_PROGRAM, arguments).c_str(), "r");
-    std::array<char, 4096> buffer;
-    for (size_t n; (n = fread(buffer.data(), 1, buffer.size(), pipe)) > 0;)
-        result.output.append(buffer.data(), n);
-    const int status = pclose(pipe);
-    result.code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-    return result;
-}
-
 class CommandLine : public testing::Test
 {
 protected:
@@ -47,7 +27,7 @@ protected:
 TEST_F(CommandLine, CompilesBesideTheInputByDefault)
 {
     const ProgramRun r =
-        run(scene() + " --sun 0,-1,0,100 --view a=0,0,3,0,0,0,40 --compress zstd:1 --report " + path("r.json"));
+        runCompiler(scene() + " --sun 0,-1,0,100 --view a=0,0,3,0,0,0,40 --compress zstd:1 --report " + path("r.json"));
     EXPECT_EQ(r.code, 0) << r.output;
     EXPECT_TRUE(std::filesystem::exists(folder_ / "scene.lumi"));
     EXPECT_TRUE(std::filesystem::exists(folder_ / "r.json"));
@@ -57,15 +37,15 @@ TEST_F(CommandLine, CompilesBesideTheInputByDefault)
 
 TEST_F(CommandLine, QuietPrintsNothing)
 {
-    const ProgramRun r = run(scene() + " -q");
+    const ProgramRun r = runCompiler(scene() + " -q");
     EXPECT_EQ(r.code, 0);
     EXPECT_EQ(r.output, "");
 }
 
 TEST_F(CommandLine, VersionAndHelpSucceed)
 {
-    EXPECT_EQ(run("--version").output, "lumicut-compile " LUMICUT_VERSION "\n");
-    EXPECT_EQ(run("--help").code, 0);
+    EXPECT_EQ(runCompiler("--version").output, "lumicut-compile " LUMICUT_VERSION "\n");
+    EXPECT_EQ(runCompiler("--help").code, 0);
 }
 
 TEST_F(CommandLine, MistakesInArgumentsAreUsageErrors)
@@ -84,7 +64,7 @@ TEST_F(CommandLine, MistakesInArgumentsAreUsageErrors)
                                             scene() + " --env sky.png",
                                             "scene.obj"};
     for (const std::string& arguments : mistakes)
-        EXPECT_EQ(run(arguments).code, 1) << arguments;
+        EXPECT_EQ(runCompiler(arguments).code, 1) << arguments;
     EXPECT_FALSE(std::filesystem::exists(folder_ / "scene.lumi"));
 }
 
@@ -95,7 +75,7 @@ TEST_F(CommandLine, FilesThatCannotBeReadOrWrittenAreInputOutputErrors)
          {path("gone.gltf"), path("folder.gltf"), scene() + " -o " + path("none/out.lumi"),
           scene() + " --env " + path("gone.exr")})
     {
-        const ProgramRun r = run(arguments);
+        const ProgramRun r = runCompiler(arguments);
         EXPECT_EQ(r.code, 2) << arguments << "\n" << r.output;
         EXPECT_NE(r.output.find(": error: "), std::string::npos) << r.output;
     }
@@ -111,7 +91,7 @@ TEST_F(CommandLine, AnEmptyFileAndAGlbCutInHalfAreInvalid)
     writeBytes(folder_ / "empty.glb", "", 0);
     for (const char* name : {"half.glb", "empty.glb"})
     {
-        const ProgramRun r = run(path(name) + " -q");
+        const ProgramRun r = runCompiler(path(name) + " -q");
         EXPECT_EQ(r.code, 3) << name;
         EXPECT_EQ(std::count(r.output.begin(), r.output.end(), '\n'), 1) << r.output;
     }

@@ -1,8 +1,8 @@
 // lumicut-scenes: writes its scenes as binary glTF files. The same program writes the same bytes.
 #include "tools/image/write_image.h"
 #include "tools/scenes/scenes.h"
+#include "tools/cli/documentation.h"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 namespace
@@ -53,6 +53,7 @@ int main(int argc, char** argv)
                  "lumicut-scenes"};
     app.set_version_flag("--version", "lumicut-scenes " LUMICUT_VERSION);
     app.add_option("OUTDIR", folder, "where to write; made if it is not there")->required();
+    addDocumentation(app);
     std::vector<std::string> known;
     std::string list = "Scenes:\n";
     for (const Scene& scene : allScenes())
