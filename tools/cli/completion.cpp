@@ -38,8 +38,10 @@ std::string bashCases(const CLI::App& app)
     std::string cases;
     for (const OptionText& option : optionTexts(app))
         if (!option.names.empty() && !option.argument.empty())
-            cases += fmt::format("    {}) COMPREPLY=($(compgen {} -- \"$cur\")); return ;;\n", joined(option.names, "|"),
-                                 option.choices.empty() ? "-f" : "-W '" + joined(option.choices, " ") + "'");
+            cases += option.choices.empty() // left to the shell, which completes names of files
+                         ? fmt::format("    {}) return ;;\n", joined(option.names, "|"))
+                         : fmt::format("    {}) COMPREPLY=($(compgen -W '{}' -- \"$cur\")); return ;;\n",
+                                       joined(option.names, "|"), joined(option.choices, " "));
     return cases;
 }
 

@@ -50,6 +50,7 @@ std::vector<OptionText> optionTexts(const CLI::App& app)
         if (!option->get_default_str().empty() && text.description.find("default") == std::string::npos)
             text.description += fmt::format(" (default: {})", option->get_default_str());
         text.required = option->get_required();
+        text.several = option->get_items_expected_max() > 1;
         texts.push_back(std::move(text));
     }
     return texts;

@@ -22,5 +22,6 @@ struct OptionText
     std::vector<std::string> choices; // values, where they are few and known
     std::string description;        // with the default
     bool required = false;
+    bool several = false; // takes more than one value
 };
 std::vector<OptionText> optionTexts(const CLI::App& app);

@@ -60,7 +60,10 @@ std::string synopsis(const CLI::App& app, const std::string& name)
     std::string line = ".B " + escaped(name) + "\n[" + italic("OPTION") + "]...";
     for (const OptionText& option : optionTexts(app))
         if (option.names.empty())
-            line += option.required ? " " + italic(option.argument) + "..." : " [" + italic(option.argument) + "...]";
+        {
+            const std::string argument = italic(option.argument) + (option.several ? "..." : "");
+            line += option.required ? " " + argument : " [" + argument + "]";
+        }
     return line + "\n";
 }
 

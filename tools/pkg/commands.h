@@ -38,6 +38,9 @@ struct BundleOptions
 /// Writes an archive with player, packages, launcher, libraries and licences: same input, same bytes.
 ExitCode bundle(const BundleOptions& options);
 
+/// Names come from files of others: without control characters, for the terminal.
+std::string printable(std::string string);
+
 /// "file: error: text" on stderr.
 inline ExitCode report(const std::filesystem::path& file, const Error& error)
 {

@@ -1,4 +1,5 @@
 #include "format/mapped_file.h"
+#include "format/package_container.h"
 #include "format/package_read.h"
 #include "tools/pkg/commands.h"
 
@@ -11,17 +12,21 @@ namespace
 {
 using Json = nlohmann::ordered_json;
 
+using ChunkId = std::pair<uint32_t, uint32_t>; // id, index
+
 /// What is compared of a package.
 struct Side
 {
-    package::Package package;
+    package::Package package;     // verified
+    package::MappedFile file;     // the same, for
+    package::Container container; // its chunks as they are once decompressed
     std::string name;
 
-    std::map<std::pair<uint32_t, uint32_t>, package::ChunkEntry> chunks() const
+    std::map<ChunkId, size_t> chunks() const // into container
     {
-        std::map<std::pair<uint32_t, uint32_t>, package::ChunkEntry> by_id;
-        for (const package::ChunkEntry& entry : package.chunks())
-            by_id[{entry.id, entry.index}] = entry;
+        std::map<ChunkId, size_t> by_id;
+        for (size_t i = 0; i < container.table.size(); ++i)
+            by_id[{container.table[i].id, container.table[i].index}] = i;
         return by_id;
     }
     std::vector<std::string> options() const
@@ -58,7 +63,20 @@ Json chunkJson(const package::ChunkEntry* entry)
             {"hash", fmt::format("{:016x}", entry->hash)}};
 }
 
-/// Hashes are of stored bytes: packages that are compressed otherwise differ.
+Result<Side> open(const std::filesystem::path& path)
+{
+    auto verified = package::Package::open(path);
+    if (!verified)
+        return verified.error();
+    auto file = package::MappedFile::open(path);
+    if (!file)
+        return file.error();
+    auto container = package::readContainer(file->bytes());
+    if (!container)
+        return container.error();
+    return Side{std::move(*verified), std::move(*file), std::move(*container), path.string()};
+}
+
 Json compare(const Side& a, const Side& b)
 {
     Json json{{"schema", "lumicut-pkg-diff/1"}, {"same", true}, {"a", a.name}, {"b", b.name}};
@@ -77,15 +95,16 @@ Json compare(const Side& a, const Side& b)
     {
         const auto in_a = chunks_a.find(key);
         const auto in_b = chunks_b.find(key);
-        const package::ChunkEntry* const entry_a = in_a == chunks_a.end() ? nullptr : &in_a->second;
-        const package::ChunkEntry* const entry_b = in_b == chunks_b.end() ? nullptr : &in_b->second;
-        const bool same = entry_a && entry_b && entry_a->hash == entry_b->hash && entry_a->codec == entry_b->codec &&
-                          entry_a->stored_bytes == entry_b->stored_bytes;
+        const bool both = in_a != chunks_a.end() && in_b != chunks_b.end();
+        const bool same =
+            both && std::ranges::equal(a.container.chunks[in_a->second], b.container.chunks[in_b->second]);
+        const auto entry = [](const Side& side, const auto& chunks, const auto& found)
+        { return found == chunks.end() ? nullptr : &side.container.table[found->second]; };
         json["chunks"].push_back({{"id", package::chunkName(key.first)},
                                   {"index", key.second},
                                   {"same", same},
-                                  {"a", chunkJson(entry_a)},
-                                  {"b", chunkJson(entry_b)}});
+                                  {"a", chunkJson(entry(a, chunks_a, in_a))},
+                                  {"b", chunkJson(entry(b, chunks_b, in_b))}});
         if (!same)
             json["same"] = false;
     }
@@ -104,7 +123,7 @@ void printText(const Json& json)
         {
             const Json& other = json["options"][side[0] == 'a' ? "b" : "a"];
             if (std::find(other.begin(), other.end(), option) == other.end())
-                fmt::print("{}option {}\n", sign, option.get<std::string>());
+                fmt::print("{}option {}\n", sign, printable(option.get<std::string>()));
         }
     };
     options("a", '-');
@@ -123,15 +142,15 @@ void printText(const Json& json)
 
 int diff(const std::filesystem::path& a, const std::filesystem::path& b, TextFormat format)
 {
-    auto package_a = package::Package::open(a);
-    auto package_b = package::Package::open(b);
-    if (!package_a)
-        report(a, package_a.error());
-    if (!package_b)
-        report(b, package_b.error());
-    if (!package_a || !package_b)
+    const Result<Side> side_a = open(a);
+    const Result<Side> side_b = open(b);
+    if (!side_a)
+        report(a, side_a.error());
+    if (!side_b)
+        report(b, side_b.error());
+    if (!side_a || !side_b)
         return kDiffTrouble;
-    const Json json = compare({std::move(*package_a), a.string()}, {std::move(*package_b), b.string()});
+    const Json json = compare(*side_a, *side_b);
     if (format == TextFormat::kJson)
         fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
     else

@@ -140,17 +140,6 @@ Json describe(const package::Package& package)
     return json;
 }
 
-/// Names come from files of others: no control characters to the terminal.
-std::string printable(std::string string)
-{
-    for (char& c : string)
-    {
-        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f)
-            c = '?';
-    }
-    return string;
-}
-
 std::string joined(const Json& strings)
 {
     std::string all;
@@ -221,6 +210,16 @@ void printText(const std::filesystem::path& path, const package::Package& packag
         fmt::print("warning      {}\n", printable(warning.get<std::string>()));
 }
 } // namespace
+
+std::string printable(std::string string)
+{
+    for (char& c : string)
+    {
+        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f)
+            c = '?';
+    }
+    return string;
+}
 
 ExitCode info(const std::filesystem::path& path, TextFormat format)
 {
