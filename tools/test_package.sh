@@ -25,7 +25,6 @@ if [ ! -e "$root/.complete" ]; then
     echo "making a bare root in $root"
     debootstrap --variant=minbase bookworm "$root" "$mirror" >"$root.log" || fail "debootstrap did not succeed, see $root.log"
     [ ! -e /etc/resolv.conf ] || cp /etc/resolv.conf "$root/etc/resolv.conf"
-    [ ! -d /etc/apt/apt.conf.d ] || cp /etc/apt/apt.conf.d/* "$root/etc/apt/apt.conf.d/" # proxies and the like
     touch "$root/.complete"
 fi
 files() {
