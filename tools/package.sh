@@ -50,7 +50,7 @@ cat >"$root/DEBIAN/control" <<END
 Package: lumicut
 Version: $version
 Architecture: $architecture
-Maintainer: Lumicut maintainers <lumicut@localhost>
+Maintainer: Lumicut maintainers <lumicut@example.org>
 Installed-Size: $(du -sk --exclude=DEBIAN "$root" | cut -f1)
 Depends: $depends
 Recommends: mesa-vulkan-drivers
@@ -66,5 +66,6 @@ find "$root" -exec touch -h -d "@$SOURCE_DATE_EPOCH" {} +
 chmod -R u=rwX,go=rX "$root"
 
 package=$out/lumicut_${version}_$architecture.deb
-dpkg-deb --root-owner-group --build "$root" "$package" >/dev/null
+dpkg-deb --root-owner-group --build "$root" "$stage/whole.deb" >/dev/null
+mv "$stage/whole.deb" "$package"
 echo "$package"
