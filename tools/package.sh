@@ -13,6 +13,7 @@ done
 tools/build.sh release lumicut-{bench,compare,compile,pkg,play,scenes} documentation
 
 version=$(sed -n 's/^project(lumicut VERSION \([0-9.]*\).*/\1/p' CMakeLists.txt)
+maintainer="Lumicut maintainers <lumicut@example.org>"
 architecture=$(dpkg --print-architecture)
 stage=$(mktemp -d)
 trap 'rm -rf "$stage"' EXIT
@@ -28,13 +29,20 @@ Format: https://www.debian.org/doc/packaging-manuals/copyright-format/1.0/
 Upstream-Name: lumicut
 
 Files: *
-Copyright: the Lumicut authors
+Copyright: $(date -u -d "@$SOURCE_DATE_EPOCH" +%Y) the Lumicut authors
 License: Apache-2.0
  On Debian systems the text of the licence is in /usr/share/common-licenses/Apache-2.0.
 END
 rm "$doc/LICENSE" # Debian has it, see copyright
-mv "$doc/CHANGELOG.md" "$doc/changelog"
-gzip -9n "$doc/changelog" "$root"/usr/share/man/man1/*.1
+gzip -9n "$doc/CHANGELOG.md"
+gzip -9n >"$doc/changelog.gz" <<END
+lumicut ($version) unstable; urgency=low
+
+  * See CHANGELOG.md.gz.
+
+ -- $maintainer  $(date -u -R -d "@$SOURCE_DATE_EPOCH")
+END
+gzip -9n "$root"/usr/share/man/man1/*.1
 mkdir -p "$root/usr/share/zsh/vendor-completions" # where Debian's zsh looks
 mv "$root"/usr/share/zsh/site-functions/* "$root/usr/share/zsh/vendor-completions/"
 rmdir "$root/usr/share/zsh/site-functions"
@@ -50,7 +58,7 @@ cat >"$root/DEBIAN/control" <<END
 Package: lumicut
 Version: $version
 Architecture: $architecture
-Maintainer: Lumicut maintainers <lumicut@example.org>
+Maintainer: $maintainer
 Installed-Size: $(du -sk --exclude=DEBIAN "$root" | cut -f1)
 Depends: $depends
 Recommends: mesa-vulkan-drivers
