@@ -50,7 +50,10 @@ Result<Cache> Cache::open(const std::filesystem::path& folder)
     return cache;
 }
 
-Cache::Cache(Cache&& other) noexcept { *this = std::move(other); }
+Cache::Cache(Cache&& other) noexcept
+{
+    *this = std::move(other);
+}
 
 Cache& Cache::operator=(Cache&& other) noexcept
 {
@@ -78,7 +81,8 @@ std::optional<std::vector<std::byte>> Cache::find(const ContentHash& key) const
     Header header;
     std::memcpy(&header, file->bytes().data(), sizeof header);
     const std::span<const std::byte> result = file->bytes().subspan(sizeof header);
-    if (header.magic != kMagic || header.key != key || header.bytes != result.size() || header.content != hashOf(result))
+    if (header.magic != kMagic || header.key != key || header.bytes != result.size() ||
+        header.content != hashOf(result))
         return std::nullopt;
     utimensat(AT_FDCWD, path.c_str(), nullptr, 0); // used now, for trim()
     --misses_;

@@ -10,8 +10,8 @@
 #include <vector>
 
 /// Each result is a file named by its key, the hash of all that it was made from, and is written whole and renamed:
-/// several programs may share a folder. A file that is damaged, foreign or of another key counts as missing. What cannot
-/// be written is made again next time; that is no error. Used from any thread.
+/// several programs may share a folder. A file that is damaged, foreign or of another key counts as missing. What
+/// cannot be written is made again next time; that is no error. Used from any thread.
 class Cache
 {
 public:

@@ -4,18 +4,18 @@
 
 struct CompileJob
 {
-    CompileOptions options;                       // `progress` and `cache` are filled in here
+    CompileOptions options;                        // `progress` and `cache` are filled in here
     std::optional<std::filesystem::path> report{}; // where its report goes
 };
 
 struct CompileManyOptions
 {
     std::vector<CompileJob> jobs;
-    unsigned threads = 1;                                  // in all, 1 and more
-    bool force = false;                                    // compile what is up to date, too
-    bool quiet = false;                                    // print errors only
-    std::optional<std::filesystem::path> cache_folder{};   // kept results of earlier runs
-    uint64_t cache_bytes = 0;                              // to which it is trimmed in the end
+    unsigned threads = 1;                                   // in all, 1 and more
+    bool force = false;                                     // compile what is up to date, too
+    bool quiet = false;                                     // print errors only
+    std::optional<std::filesystem::path> cache_folder{};    // kept results of earlier runs
+    uint64_t cache_bytes = 0;                               // to which it is trimmed in the end
     std::optional<std::filesystem::path> dependency_file{}; // of all packages that are there in the end
 };
 

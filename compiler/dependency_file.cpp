@@ -23,7 +23,8 @@ std::string escaped(const std::string& name)
 }
 } // namespace
 
-Result<std::string> dependencyRule(const std::filesystem::path& output, const std::vector<std::filesystem::path>& inputs)
+Result<std::string> dependencyRule(const std::filesystem::path& output,
+                                   const std::vector<std::filesystem::path>& inputs)
 {
     std::string rule = escaped(output.string()) + ":";
     std::string empty_rules;

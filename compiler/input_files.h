@@ -12,7 +12,7 @@
 
 struct InputFile
 {
-    std::string name;                    // as the scene names it: relative to its folder, or absolute
+    std::string name;                     // as the scene names it: relative to its folder, or absolute
     std::optional<ContentHash> content{}; // none: it could not be read
 };
 
@@ -22,8 +22,8 @@ public:
     /// @param folder where relative names start
     explicit InputFiles(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
-    /// A whole regular file, noted down with what it holds, or kIo with the system's reason, noted down as missing. From
-    /// any thread.
+    /// A whole regular file, noted down with what it holds, or kIo with the system's reason, noted down as missing.
+    /// From any thread.
     Result<std::vector<unsigned char>> read(const std::string& name);
 
     /// By name, each once.

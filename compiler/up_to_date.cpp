@@ -52,8 +52,9 @@ bool isUpToDate(const CompileOptions& options, const PackageOrigin& origin)
     if (p.compiler != compilerHash() || p.options != options.text || p.source != options.input.filename().string() ||
         p.inputs.empty())
         return false;
-    if (options.environment ? p.environment_content == nullptr || !holds(*options.environment, p.environment_content.get())
-                            : p.environment_content != nullptr)
+    if (options.environment
+            ? p.environment_content == nullptr || !holds(*options.environment, p.environment_content.get())
+            : p.environment_content != nullptr)
         return false;
     std::vector<uint8_t> same(p.inputs.size());
     parallelFor(same.size(),

@@ -21,4 +21,5 @@ bool isUpToDate(const CompileOptions& options, const PackageOrigin& origin);
 
 /// Every file that a package was made from or asked for, as paths that hold from here: the scene, what it names, the
 /// environment.
-std::vector<std::filesystem::path> inputPaths(const CompileOptions& options, const lumicut::fb::ProvenanceT& provenance);
+std::vector<std::filesystem::path> inputPaths(const CompileOptions& options,
+                                              const lumicut::fb::ProvenanceT& provenance);

@@ -84,7 +84,8 @@ TEST_F(CacheFolder, TrimmingRemovesWhatWasNotUsedForLongest)
         cache.through(key(number), [] { return made(1000, 0); });
     const auto now = std::filesystem::file_time_type::clock::now();
     for (const int number : {1, 2, 3})
-        std::filesystem::last_write_time(folder / "cache" / (key(number).hex() + ".lumicache"), now - hours(10 - number));
+        std::filesystem::last_write_time(folder / "cache" / (key(number).hex() + ".lumicache"),
+                                         now - hours(10 - number));
     EXPECT_TRUE(holds(1)); // used just now
     cache.trim(2500);      // two fit
     EXPECT_TRUE(holds(1));
@@ -123,7 +124,8 @@ GltfBuilder scene(float corner, uint8_t red)
     const int b = builder.texture(1, 1, {7, 7, 7, 255});
     builder.material({{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", a}}}}}});
     builder.material({{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", b}}}}}});
-    builder.triangle({{"material", 0}, {"attributes", {{"POSITION", builder.positions({0, 0, 0, 1, 0, 0, 0, corner, 0})}}}});
+    builder.triangle(
+        {{"material", 0}, {"attributes", {{"POSITION", builder.positions({0, 0, 0, 1, 0, 0, 0, corner, 0})}}}});
     builder.triangle({{"material", 1}});
     builder.json["nodes"][1]["translation"] = {0, 0, 2};
     builder.json["scenes"][0]["nodes"] = {0, 1};

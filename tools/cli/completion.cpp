@@ -63,8 +63,9 @@ std::string bash(const CLI::App& app)
         text += "    case $prev in\n" + cases + "    esac\n";
     if (!words.empty())
     {
-        text += fmt::format("    if [[ $COMP_CWORD == 1 ]]; then COMPREPLY=($(compgen -W '{} {}' -- \"$cur\")); return; fi\n",
-                            words, names(app));
+        text += fmt::format(
+            "    if [[ $COMP_CWORD == 1 ]]; then COMPREPLY=($(compgen -W '{} {}' -- \"$cur\")); return; fi\n", words,
+            names(app));
         text += "    local options=\n    case ${COMP_WORDS[1]} in\n";
         for (const CLI::App* command : commandsOf(app))
             text += fmt::format("    {}) options='{}' ;;\n", command->get_name(), names(*command));
@@ -114,7 +115,8 @@ std::string zsh(const CLI::App& app)
     text += "if (( CURRENT == 2 )); then\n  local -a commands=(\n";
     for (const CLI::App* command : commands)
         text += fmt::format("    '{}:{}'\n", command->get_name(), zshText(command->get_description()));
-    text += "  )\n  _describe command commands\n" + zshArguments(app) + "  return\nfi\nlocal command=${words[2]}\n"
+    text += "  )\n  _describe command commands\n" + zshArguments(app) +
+            "  return\nfi\nlocal command=${words[2]}\n"
             "shift words\n(( CURRENT-- ))\ncase $command in\n";
     for (const CLI::App* command : commands)
         text += fmt::format("{})\n{}  ;;\n", command->get_name(), zshArguments(*command));
@@ -151,8 +153,8 @@ std::string fish(const CLI::App& app)
     std::string text;
     const auto commands = commandsOf(app);
     for (const CLI::App* command : commands)
-        text += fmt::format("complete -c {} -n __fish_use_subcommand -a {} -d {}\n", app.get_name(), command->get_name(),
-                            fishQuoted(command->get_description()));
+        text += fmt::format("complete -c {} -n __fish_use_subcommand -a {} -d {}\n", app.get_name(),
+                            command->get_name(), fishQuoted(command->get_description()));
     text += fishOptions(app, app.get_name(), commands.empty() ? "" : " -n __fish_use_subcommand");
     for (const CLI::App* command : commands)
         text += fishOptions(*command, app.get_name(),

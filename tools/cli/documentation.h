@@ -17,10 +17,10 @@ std::string completion(const CLI::App& app, const std::string& shell);
 /// What the two need to know of an option; hidden ones are left out.
 struct OptionText
 {
-    std::vector<std::string> names; // with their dashes; empty for a positional argument
-    std::string argument;           // what its value is called, empty for a flag
+    std::vector<std::string> names;   // with their dashes; empty for a positional argument
+    std::string argument;             // what its value is called, empty for a flag
     std::vector<std::string> choices; // values, where they are few and known
-    std::string description;        // with the default
+    std::string description;          // with the default
     bool required = false;
     bool several = false; // takes more than one value
 };

@@ -87,9 +87,9 @@ std::string manualPage(const CLI::App& app)
     std::string upper = name;
     for (char& c : upper)
         c = char(std::toupper(static_cast<unsigned char>(c)));
-    std::string page = fmt::format(".TH {} 1 \"\" \"Lumicut {}\" \"User Commands\"\n.SH NAME\n{} \\- {}\n.SH SYNOPSIS\n",
-                                   escaped(upper), LUMICUT_VERSION, escaped(name),
-                                   escaped(firstClause(app.get_description())));
+    std::string page =
+        fmt::format(".TH {} 1 \"\" \"Lumicut {}\" \"User Commands\"\n.SH NAME\n{} \\- {}\n.SH SYNOPSIS\n",
+                    escaped(upper), LUMICUT_VERSION, escaped(name), escaped(firstClause(app.get_description())));
     const std::vector<const CLI::App*> commands = app.get_subcommands([](const CLI::App*) { return true; });
     if (commands.empty())
         page += synopsis(app, name);

@@ -46,15 +46,17 @@ Status extractTexture(const package::Package& package, const Wanted& wanted, con
     const auto& pages = *package.meta().texture_pages();
     const auto [page, layer] = wanted.number;
     if (wanted.number_count != 2 || page >= pages.size() || layer >= pages[page]->layers())
-        return Error{ExitCode::kUsage, fmt::format("there is no such texture; say texture/PAGE/LAYER as `lumicut-pkg info` "
-                                                   "counts them from 0 ({} pages)",
-                                                   pages.size())};
+        return Error{ExitCode::kUsage,
+                     fmt::format("there is no such texture; say texture/PAGE/LAYER as `lumicut-pkg info` "
+                                 "counts them from 0 ({} pages)",
+                                 pages.size())};
     const lumicut::fb::TexturePage& p = *pages[page];
     const bool rgba8 = p.encoding() == lumicut::fb::TextureEncoding::Rgba8Srgb ||
                        p.encoding() == lumicut::fb::TextureEncoding::Rgba8Unorm;
     if (!rgba8)
-        return Error{ExitCode::kUnsupported, fmt::format("its texels are block-compressed ({}); extract TEXP/{} instead",
-                                                         lumicut::fb::EnumNameTextureEncoding(p.encoding()), page)};
+        return Error{ExitCode::kUnsupported,
+                     fmt::format("its texels are block-compressed ({}); extract TEXP/{} instead",
+                                 lumicut::fb::EnumNameTextureEncoding(p.encoding()), page)};
     const size_t bytes = size_t(4) * p.width() * p.height();
     return writePng(output, p.width(), p.height(), 4, asBytes(package.texturePage(page).subspan(layer * bytes, bytes)));
 }
@@ -79,11 +81,12 @@ Status extractChunk(const std::filesystem::path& path, const Wanted& wanted, con
     if (!container)
         return container.error();
     for (size_t i = 0; i < container->table.size(); ++i)
-        if (package::chunkName(container->table[i].id) == wanted.name && container->table[i].index == wanted.number[0] &&
-            wanted.number_count < 2)
+        if (package::chunkName(container->table[i].id) == wanted.name &&
+            container->table[i].index == wanted.number[0] && wanted.number_count < 2)
             return writeFile(output, asBytes(container->chunks[i]));
-    return Error{ExitCode::kUsage, "the package has nothing of this name; say geometry, environment, texture/PAGE/LAYER, or "
-                                   "a chunk that `lumicut-pkg info` lists, as in NODE or TEXP/1"};
+    return Error{ExitCode::kUsage,
+                 "the package has nothing of this name; say geometry, environment, texture/PAGE/LAYER, or "
+                 "a chunk that `lumicut-pkg info` lists, as in NODE or TEXP/1"};
 }
 
 Status checkSuffix(const Wanted& wanted, const std::filesystem::path& output)

@@ -24,10 +24,8 @@ struct Buffer
         views.push_back({{"buffer", 0}, {"byteOffset", bytes.size()}, {"byteLength", data.size() * sizeof(T)}});
         const auto* from = reinterpret_cast<const uint8_t*>(data.data());
         bytes.insert(bytes.end(), from, from + data.size() * sizeof(T));
-        Json accessor{{"bufferView", views.size() - 1},
-                      {"componentType", component_type},
-                      {"count", count},
-                      {"type", type}};
+        Json accessor{
+            {"bufferView", views.size() - 1}, {"componentType", component_type}, {"count", count}, {"type", type}};
         accessor.update(extra);
         accessors.push_back(accessor);
         return accessors.size() - 1;
