@@ -7,6 +7,7 @@
 #include "compiler/flatten.h"
 #include "compiler/gltf_material.h"
 #include "compiler/import_gltf.h"
+#include "compiler/light_need.h"
 #include "compiler/package_meta.h"
 #include "compiler/texture_pages.h"
 #include "compiler/world_frame.h"
@@ -68,21 +69,37 @@ Status addViewsAndLights(const CompileOptions& options, SceneData& scene)
     return Success{};
 }
 
-LightTables lightsOrDefault(const CompileOptions& options, SceneData& scene)
+LightTables lightsOrDefault(const CompileOptions& options, const Bvh& bvh, SceneData& scene)
 {
     LightTables lights = buildLights(scene);
-    if (!lights.lights.empty())
+    const bool chosen = options.environment || options.sun; // light from the command line
+    const LightNeed need = judgeLight(scene, bvh, lights);
+    const bool add = options.default_light == DefaultLight::kOn ||
+                     (options.default_light == DefaultLight::kAuto && !chosen && need.dark);
+    if (need.dark || need.dim || add)
+        scene.warnings.push_back({WarningKind::kDefaultLight, "", need.sentence,
+                                  add        ? "it gets the default sky and sun (--default-light off leaves them out)"
+                                  : need.dark ? "every picture of it will be black (--default-light on adds a sky and a sun)"
+                                              : "pictures of it will be dark (--default-light on adds a sky and a sun)"});
+    if (!add)
         return lights;
-    if (!options.default_light)
-    {
-        scene.warnings.push_back("the scene has no light at all: every picture of it will be black");
-        return lights;
-    }
-    scene.warnings.push_back(
-        "the scene has no light at all: it gets the default sky and sun (--no-default-light leaves it dark)");
-    scene.environment = defaultSky();
-    scene.lights = {defaultSun()};
+    if (!scene.environment)
+        scene.environment = defaultSky();
+    scene.lights.push_back(defaultSun());
     return buildLights(scene);
+}
+
+/// The error that damaged items are under --strict, or where nothing else is left.
+Error damageError(const Warnings& damage, std::string message)
+{
+    Error error{ExitCode::kInvalid, std::move(message)};
+    for (const Warning& warning : damage)
+    {
+        error.details.push_back(sentence(warning));
+        if (warning.code == ExitCode::kIo && warning.pointer.starts_with("/buffers/"))
+            error.code = ExitCode::kIo;
+    }
+    return error;
 }
 
 /// Alpha only where a triangle's coverage can be below 1: by its material or its vertices' colours.
@@ -179,15 +196,18 @@ Result<CompileReport> runPipeline(const CompileOptions& options)
     watch.stage("geometry",
                 fmt::format("{} primitives, {} objects", imported->primitives.size(), imported->instances.size()));
 
-    Result<std::vector<TextureImage>> images = decodeImages(*file, imported->images);
+    Result<std::vector<DecodedImage>> images = decodeImages(*file, imported->images);
     if (!images)
         return images.error();
-    scene.images = std::move(*images);
+    takeImages(std::move(*images), scene);
     watch.stage("images", fmt::format("{} decoded", scene.images.size()));
 
     Result<WorldMesh> mesh = flatten(*imported, scene.counts, scene.warnings);
     if (!mesh)
-        return mesh.error();
+    {
+        const Warnings damage = damageAmong(scene.warnings);
+        return damage.empty() ? mesh.error() : damageError(damage, mesh.error().message);
+    }
     scene.mesh = std::move(*mesh);
     imported->primitives = {};
     watch.stage("mesh",
@@ -195,7 +215,10 @@ Result<CompileReport> runPipeline(const CompileOptions& options)
 
     if (const Status status = addViewsAndLights(options, scene); !status)
         return status.error();
-    const LightTables lights = lightsOrDefault(options, scene);
+    const Bvh bvh = buildBvh(scene.mesh, triangleFlags(scene));
+    watch.stage("bvh", fmt::format("{} nodes, SAH cost {:.1f}, depth {}", bvh.nodes.size(), bvh.sah_cost, bvh.depth));
+
+    const LightTables lights = lightsOrDefault(options, bvh, scene);
     std::optional<EnvironmentImportance> importance;
     if (scene.environment)
         importance = buildImportance(*scene.environment);
@@ -203,15 +226,17 @@ Result<CompileReport> runPipeline(const CompileOptions& options)
     watch.stage("lights",
                 fmt::format("{} lights, {} caustic targets", lights.lights.size(), lights.caustic_targets.size()));
 
-    const Bvh bvh = buildBvh(scene.mesh, triangleFlags(scene));
-    watch.stage("bvh", fmt::format("{} nodes, SAH cost {:.1f}, depth {}", bvh.nodes.size(), bvh.sah_cost, bvh.depth));
-
     const TexturePages textures = buildTexturePages(scene.images, scene.texture_uses);
     if (textures.resized > 0)
-        scene.warnings.push_back(fmt::format("{} images were resized so that {} texture pages suffice",
-                                             textures.resized, gpu::kTexturePageCount));
+        scene.warnings.push_back({WarningKind::kApproximated, "",
+                                  fmt::format("{} images were resized so that {} texture pages suffice", textures.resized,
+                                              gpu::kTexturePageCount),
+                                  ""});
     watch.stage("textures", fmt::format("{} images, {} pages", scene.images.size(), textures.pages.size()));
 
+    if (const Warnings damage = damageAmong(scene.warnings); options.strict && !damage.empty())
+        return damageError(damage, fmt::format("{} items are damaged; without --strict the package is made", damage.size()));
+    report.warnings = scene.warnings;
     report.meta = makeMeta(options, scene, bvh, lights, textures, sky);
     auto chunks = writePackage(options, scene, bvh, lights, textures, sky, report.meta);
     if (!chunks)

@@ -11,6 +11,14 @@
 #include <string>
 #include <vector>
 
+/// Whether the scene gets a sky and a sun besides its own light.
+enum class DefaultLight
+{
+    kAuto, // where its own light would leave the picture black, and no light comes from the command line
+    kOn,
+    kOff,
+};
+
 struct CompileOptions
 {
     std::filesystem::path input;  // .gltf or .glb
@@ -18,7 +26,8 @@ struct CompileOptions
     std::optional<std::filesystem::path> environment{};
     std::optional<PunctualLight> sun{};
     std::vector<CameraView> views{}; // in the file's coordinates; come before its own cameras
-    bool default_light = true;       // give a scene without any light a sky and a sun
+    DefaultLight default_light = DefaultLight::kAuto;
+    bool strict = false; // damaged items of the scene are an error
     int zstd_level = 0;              // 0: no compression
     std::vector<std::string> text{}; // the options as given, for the package's provenance
     std::function<void(double seconds, const std::string& line)> progress{}; // after each stage; may be empty
@@ -34,6 +43,7 @@ struct CompileStage
 struct CompileReport
 {
     lumicut::fb::MetaT meta;
+    Warnings warnings; // each of them; META has their sentences, summed
     uint32_t point_lights = 0;
     uint32_t spot_lights = 0;
     uint32_t directional_lights = 0;
@@ -46,7 +56,8 @@ struct CompileReport
 };
 
 /// Compiles `options.input` and writes `options.output`, all or nothing. Equal input and options give equal bytes.
-/// @return errors as the stages give them; kDevice where memory runs out
+/// @return errors as the stages give them; kDevice where memory runs out. What was damaged is in the error's details where
+///         nothing is left to draw, and where options.strict makes it the error (kInvalid)
 Result<CompileReport> compile(const CompileOptions& options);
 
 /// What can be known before any work: suffixes, and whether the output's folder can be written to.

@@ -98,18 +98,18 @@ public:
     {
     }
 
-    Status add(const MeshPrimitive& primitive, const Transform& to_world, uint32_t object)
+    /// @return false where nothing was added: vertices are beyond the range of numbers
+    bool add(const MeshPrimitive& primitive, const Transform& to_world, uint32_t object)
     {
         transformVertices(primitive, to_world);
-        for (const gpu::vec3 p : world_)
-            if (!isFinite(p))
-                return Error{ExitCode::kInvalid, "a node's transform moves vertices beyond the range of numbers"};
+        if (!std::all_of(world_.begin(), world_.end(), [](gpu::vec3 p) { return isFinite(p); }))
+            return false;
         for (std::vector<uint32_t>& slots : slots_)
             slots.assign(primitive.positions.size(), kUnset);
         const bool mirrored = to_world.determinant() < 0;
         for (const gpu::uvec3 t : primitive.triangles)
             addTriangle(primitive, mirrored, object, mirrored ? gpu::uvec3{t.x, t.z, t.y} : t);
-        return Success{};
+        return true;
     }
 
     WorldMesh take() { return std::move(mesh_); }
@@ -255,7 +255,7 @@ private:
 };
 } // namespace
 
-Result<WorldMesh> flatten(const ImportedScene& imported, ImportCounts& counts, std::vector<std::string>& warnings)
+Result<WorldMesh> flatten(const ImportedScene& imported, ImportCounts& counts, Warnings& warnings)
 {
     const size_t total = triangleTotal(imported);
     if (total > kMaxTriangles)
@@ -264,29 +264,35 @@ Result<WorldMesh> flatten(const ImportedScene& imported, ImportCounts& counts, s
             fmt::format("it has {} triangles with all its instances; at most {} are supported", total, kMaxTriangles)};
     Flattener flattener(imported.scene, total, counts);
     uint32_t object = 0;
+    size_t beyond = 0;
     for (const ImportedInstance& instance : imported.instances)
     {
         for (size_t p = 0; p < instance.primitive_count; ++p)
-            if (const Status status =
-                    flattener.add(imported.primitives[instance.first_primitive + p], instance.to_world, object);
-                !status)
-                return status.error();
+            beyond += !flattener.add(imported.primitives[instance.first_primitive + p], instance.to_world, object);
         ++object;
     }
+    if (beyond > 0)
+        warnings.push_back({WarningKind::kBadGeometry, "",
+                            fmt::format("nodes move {} primitives beyond the range of numbers", beyond), "they are left out"});
     WorldMesh mesh = flattener.take();
     if (mesh.triangles.empty())
         return Error{ExitCode::kInvalid, "its default scene holds no triangles, so there is nothing to render"};
     mesh.object_count = object;
     if (flattener.flippedTriangles() > 0)
-        warnings.push_back(fmt::format("{} of {} triangles have normals against their winding; they were flipped",
-                                       flattener.flippedTriangles(), mesh.triangles.size()));
+        warnings.push_back({WarningKind::kApproximated, "",
+                            fmt::format("{} of {} triangles have normals against their winding; they were flipped",
+                                        flattener.flippedTriangles(), mesh.triangles.size()),
+                            ""});
     if (flattener.repairedNormals() > 0)
-        warnings.push_back(
-            fmt::format("{} vertex normals have no direction and were replaced by that of their triangle",
-                        flattener.repairedNormals()));
+        warnings.push_back({WarningKind::kBadGeometry, "",
+                            fmt::format("{} vertex normals have no direction and were replaced by that of their triangle",
+                                        flattener.repairedNormals()),
+                            ""});
     if (flattener.repairedValues() > 0)
-        warnings.push_back(fmt::format("{} texture coordinates or vertex colours are not finite and became 0",
-                                       flattener.repairedValues()));
+        warnings.push_back({WarningKind::kBadGeometry, "",
+                            fmt::format("{} texture coordinates or vertex colours are not finite and became 0",
+                                        flattener.repairedValues()),
+                            ""});
     return mesh;
 }
 

@@ -68,7 +68,7 @@ std::string refusal(const std::string& name)
 }
 } // namespace
 
-Status checkExtensions(const nlohmann::json& document, std::vector<std::string>& warnings)
+Status checkExtensions(const nlohmann::json& document, Warnings& warnings)
 {
     const Result<std::set<std::string>> required = names(document, "extensionsRequired");
     const Result<std::set<std::string>> used = names(document, "extensionsUsed");
@@ -82,6 +82,8 @@ Status checkExtensions(const nlohmann::json& document, std::vector<std::string>&
         if (!contains(kHonoured, name) && !contains(kHarmless, name))
             dropped.push_back(name);
     if (!dropped.empty())
-        warnings.push_back(fmt::format("extensions that are not supported are left out: {}", fmt::join(dropped, ", ")));
+        warnings.push_back(
+            {WarningKind::kLeftOut, "/extensionsUsed",
+             fmt::format("extensions that are not supported are left out: {}", fmt::join(dropped, ", ")), ""});
     return Success{};
 }

@@ -1,6 +1,7 @@
 #include "compiler/gltf_file.h"
 
 #include "compiler/gltf_extensions.h"
+#include "compiler/gltf_repair.h"
 
 #include <fmt/format.h>
 
@@ -124,24 +125,6 @@ Status checkVersion(const json& document)
     return Success{};
 }
 
-/// Every top-level list must be an array of objects.
-Status checkShape(const json& document)
-{
-    for (const char* name : {"accessors", "bufferViews", "buffers", "cameras", "images", "materials", "meshes", "nodes",
-                             "samplers", "scenes", "textures"})
-    {
-        const auto list = document.find(name);
-        if (list == document.end())
-            continue;
-        if (!list->is_array())
-            return Error{ExitCode::kInvalid, fmt::format("an array is expected (/{})", name)};
-        for (size_t i = 0; i < list->size(); ++i)
-            if (!(*list)[i].is_object())
-                return Error{ExitCode::kInvalid, fmt::format("an object is expected (/{}/{})", name, i)};
-    }
-    return Success{};
-}
-
 bool isMeshoptFallback(const json& buffer)
 {
     const auto extensions = buffer.find("extensions");
@@ -257,7 +240,7 @@ struct LoadedBuffers
 };
 
 Result<LoadedBuffers> takeBuffers(json& document, const std::optional<ByteView>& bin,
-                                  const std::filesystem::path& folder)
+                                  const std::filesystem::path& folder, Warnings& warnings)
 {
     LoadedBuffers loaded;
     if (!document.contains("buffers"))
@@ -266,8 +249,19 @@ Result<LoadedBuffers> takeBuffers(json& document, const std::optional<ByteView>&
     for (size_t i = 0; i < list.size(); ++i)
     {
         Result<Bytes> bytes = readBuffer(list[i], i, bin, folder);
-        if (!bytes)
+        if (!bytes && bytes.error().code == ExitCode::kUnsupported)
             return bytes.error();
+        if (!bytes)
+        {
+            const std::string pointer = fmt::format("/buffers/{}", i);
+            std::string message = withoutFolder(bytes.error().message, folder);
+            if (const size_t place = message.rfind(fmt::format(" ({}", pointer)); place != std::string::npos)
+                message.resize(place);
+            warnings.push_back(
+                {WarningKind::kUnreadable, pointer, message, "what lies in it is left out", bytes.error().code});
+            bytes = Bytes(1);
+            list[i]["byteLength"] = 1;
+        }
         loaded.buffers.push_back(std::move(*bytes));
         list[i]["uri"] = std::to_string(i);
     }
@@ -322,6 +316,14 @@ Result<Bytes> readFile(const std::filesystem::path& path)
     return bytes;
 }
 
+std::string withoutFolder(std::string message, const std::filesystem::path& folder)
+{
+    const std::string prefix = "\"" + (folder / "").string();
+    for (size_t at; prefix.size() > 1 && (at = message.find(prefix)) != std::string::npos;)
+        message.erase(at + 1, prefix.size() - 1);
+    return message;
+}
+
 Result<GltfFile> readGltf(const std::filesystem::path& path)
 {
     const Result<Bytes> bytes = readFile(path);
@@ -341,19 +343,19 @@ Result<GltfFile> readGltf(const std::filesystem::path& path)
         return document.error();
     if (const Status status = checkVersion(*document); !status)
         return status.error();
-    if (const Status status = checkShape(*document); !status)
-        return status.error();
 
     GltfFile file;
     file.folder = path.parent_path();
+    repairGltf(*document, file.warnings);
     if (const Status status = checkExtensions(*document, file.warnings); !status)
         return status.error();
     if (document->contains("animations") || document->contains("skins"))
-        file.warnings.push_back("animations and skins are not played: the scene is compiled in its rest pose");
+        file.warnings.push_back({WarningKind::kLeftOut, "",
+                                 "animations and skins are not played: the scene is compiled in its rest pose", ""});
     document->erase("animations");
     document->erase("skins");
 
-    Result<LoadedBuffers> buffers = takeBuffers(*document, container->bin, file.folder);
+    Result<LoadedBuffers> buffers = takeBuffers(*document, container->bin, file.folder, file.warnings);
     if (!buffers)
         return buffers.error();
     Result<std::vector<GltfImage>> images = takeImages(*document);

@@ -1,5 +1,6 @@
 // Opens .gltf and .glb files: reads every byte the scene refers to and hands back tinygltf's model of it.
 #pragma once
+#include "compiler/warnings.h"
 #include "format/result.h"
 
 #include <cstddef>
@@ -24,17 +25,20 @@ struct GltfImage
 struct GltfFile
 {
     std::filesystem::path folder;      // relative URIs start here
-    tinygltf::Model model;             // buffers loaded; indices between its parts are unchecked; no images
+    tinygltf::Model model;             // buffers loaded; indices between its parts as after repairGltf(); no images
     std::vector<GltfImage> images;     // as in the file
-    std::vector<std::string> warnings; // full sentences
+    Warnings warnings;
 };
 
-/// @return kIo where the file cannot be read, kInvalid where it is not glTF 2 or one of its buffers is missing,
-///         kUnsupported for another glTF version, an unknown required extension or one that cannot be decoded
+/// Damaged items are replaced and reported (gltf_repair.h); a buffer that cannot be read is too, and is one byte long then.
+/// @return kIo where the file cannot be read, kInvalid where it is not glTF 2, kUnsupported for another glTF version, an unknown required extension or one that cannot be decoded
 Result<GltfFile> readGltf(const std::filesystem::path& path);
 
 /// The bytes behind a `uri` of the file: base64 data or a file in `folder`.
 Result<std::vector<unsigned char>> readUri(const std::string& uri, const std::filesystem::path& folder);
+
+/// `message` with paths below `folder` relative to it, so that what is kept does not depend on where the scene lies.
+std::string withoutFolder(std::string message, const std::filesystem::path& folder);
 
 /// A whole regular file, or kIo with the system's reason.
 Result<std::vector<unsigned char>> readFile(const std::filesystem::path& path);

@@ -3,9 +3,13 @@
 #include "compiler/linear.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <initializer_list>
+#include <map>
+#include <set>
+#include <utility>
 
 namespace
 {
@@ -57,7 +61,7 @@ uint32_t wrapMode(int gltf_wrap)
                                                                 : gpu::kWrapRepeat;
 }
 
-/// Reads texture references; remembers the first thing that was wrong.
+/// Reads texture references, which repairGltf() has seen: they name textures and images that exist.
 class TextureReader
 {
 public:
@@ -98,7 +102,6 @@ public:
                    srgb);
     }
 
-    Status status() const { return error_.message.empty() ? Status(Success{}) : Status(error_); }
     bool unsupportedTexCoord() const { return unsupported_tex_coord_; }
 
 private:
@@ -107,31 +110,15 @@ private:
         if (texture == -1)
             return -1;
         const auto& textures = file_.model.textures;
-        if (texture < 0 || size_t(texture) >= textures.size())
-            return fail(ExitCode::kInvalid, fmt::format("a material names texture {}, which does not exist", texture));
         int source = textures[size_t(texture)].source;
         const auto webp = textures[size_t(texture)].extensions.find("EXT_texture_webp");
         if (webp != textures[size_t(texture)].extensions.end() && webp->second.Get("source").IsInt())
             source = webp->second.Get("source").GetNumberAsInt();
-        if (source < 0 && textures[size_t(texture)].extensions.contains("KHR_texture_basisu"))
-            return fail(
-                ExitCode::kUnsupported,
-                fmt::format("a texture is there as KTX2 (Basis Universal) only, which is not supported; export it as "
-                            "PNG, JPEG or WebP (/textures/{})",
-                            texture));
-        if (source == -1) // allowed: an extension that is not honoured may hold it
-            return -1;
-        if (source < 0 || size_t(source) >= file_.images.size())
-            return fail(ExitCode::kInvalid,
-                        fmt::format("image {} does not exist (/textures/{}/source)", source, texture));
+        if (source == -1 && reported_.insert(texture).second) // allowed: an extension that is not honoured may hold it
+            scene_.warnings.push_back({WarningKind::kLeftOut, fmt::format("/textures/{}", texture),
+                                       "a texture names no image of a kind that can be read (PNG, JPEG, WebP)",
+                                       "its materials go without it"});
         return source;
-    }
-
-    int fail(ExitCode code, std::string message)
-    {
-        if (error_.message.empty())
-            error_ = {code, std::move(message)};
-        return -1;
     }
 
     uint32_t request(ImageRequest wanted)
@@ -181,7 +168,7 @@ private:
     const GltfFile& file_;
     SceneData& scene_;
     std::vector<ImageRequest>& requests_;
-    Error error_;
+    std::set<int> reported_; // textures without an image
     bool unsupported_tex_coord_ = false;
 };
 
@@ -235,6 +222,8 @@ void readEmission(const tinygltf::Material& from, const Value* strength, Texture
     if (m.emission.x > 0 || m.emission.y > 0 || m.emission.z > 0)
         m.emissive_texture = textures.use(from.emissiveTexture.index, from.emissiveTexture.texCoord,
                                           from.emissiveTexture.extensions, true);
+    if (from.emissiveTexture.index != -1 && m.emissive_texture == gpu::kNone)
+        m.emission = {}; // without its map, which says what glows, all of the surface would
 }
 
 void readTransmission(const Value& transmission, const Value* volume, TextureReader& textures, gpu::Material& m)
@@ -305,6 +294,17 @@ gpu::Material readMaterial(const tinygltf::Material& from, TextureReader& textur
     return m;
 }
 
+/// What a material has in place of a texture that cannot be read.
+constexpr std::pair<uint32_t gpu::Material::*, std::string_view> kStandIns[] = {
+    {&gpu::Material::base_color_texture, "the base colour factor alone"},
+    {&gpu::Material::metallic_roughness_texture, "the metallic and roughness factors alone"},
+    {&gpu::Material::normal_texture, "the surface's own normals"},
+    {&gpu::Material::emissive_texture, "no emission"},
+    {&gpu::Material::transmission_texture, "the transmission factor alone"},
+    {&gpu::Material::specular_texture, "the specular factor alone"},
+    {&gpu::Material::specular_color_texture, "the specular colour factor alone"},
+};
+
 bool hasTransparentTexel(const TextureImage& image)
 {
     for (size_t i = 3; i < image.texels.size(); i += 4)
@@ -314,7 +314,7 @@ bool hasTransparentTexel(const TextureImage& image)
 }
 } // namespace
 
-Status importMaterials(const GltfFile& file, std::span<const int> used, SceneData& scene,
+void importMaterials(const GltfFile& file, std::span<const int> used, SceneData& scene,
                        std::vector<ImageRequest>& requests)
 {
     TextureReader textures(file, scene, requests);
@@ -322,12 +322,8 @@ Status importMaterials(const GltfFile& file, std::span<const int> used, SceneDat
     for (const int index : used)
     {
         const bool is_default = index < 0;
-        if (!is_default && size_t(index) >= file.model.materials.size())
-            return Error{ExitCode::kInvalid, fmt::format("a mesh names material {}, which does not exist", index)};
         scene.materials.push_back(is_default ? defaultMaterial()
                                              : readMaterial(file.model.materials[size_t(index)], textures));
-        if (const Status status = textures.status(); !status)
-            return Error{status.error().code, fmt::format("{} (/materials/{})", status.error().message, index)};
         if (is_default)
         {
             scene.material_names.push_back("default");
@@ -339,11 +335,62 @@ Status importMaterials(const GltfFile& file, std::span<const int> used, SceneDat
         lost_glossiness |= sg != from.extensions.end() && sg->second.Has("specularGlossinessTexture");
     }
     if (textures.unsupportedTexCoord())
-        scene.warnings.push_back("some textures use a coordinate set above TEXCOORD_1; they are drawn with TEXCOORD_0");
+        scene.warnings.push_back({WarningKind::kApproximated, "",
+                                  "some textures use a coordinate set above TEXCOORD_1; they are drawn with TEXCOORD_0", ""});
     if (lost_glossiness)
         scene.warnings.push_back(
-            "glossiness textures (KHR_materials_pbrSpecularGlossiness) are left out: only the factor is used");
-    return Success{};
+            {WarningKind::kLeftOut, "",
+             "glossiness textures (KHR_materials_pbrSpecularGlossiness) are left out: only the factor is used", ""});
+}
+
+void takeImages(std::vector<DecodedImage> decoded, SceneData& scene)
+{
+    std::map<int, std::set<std::string_view>> stand_ins; // by image of the file
+    for (gpu::Material& m : scene.materials)
+        for (const auto& [member, stand_in] : kStandIns)
+        {
+            if (m.*member == gpu::kNone)
+                continue;
+            const DecodedImage& image = decoded[scene.texture_uses[m.*member].image];
+            if (!image.error)
+                continue;
+            m.*member = gpu::kNone;
+            stand_ins[image.source].insert(stand_in);
+            if (member == &gpu::Material::emissive_texture)
+                m.emission = {};
+        }
+    std::vector<uint32_t> image_places(decoded.size(), gpu::kNone); // of those that are left
+    for (size_t i = 0; i < decoded.size(); ++i)
+    {
+        DecodedImage& image = decoded[i];
+        if (!image.error)
+        {
+            image_places[i] = uint32_t(scene.images.size());
+            scene.images.push_back(std::move(image.image));
+        }
+        else if (const auto found = stand_ins.find(image.source); found != stand_ins.end())
+        {
+            scene.warnings.push_back({WarningKind::kUnreadable, fmt::format("/images/{}", image.source), image.error->message,
+                                      fmt::format("in its place: {}", fmt::join(found->second, ", ")), image.error->code});
+            stand_ins.erase(found); // an image as colour and as data is one
+        }
+    }
+    std::vector<uint32_t> use_places(scene.texture_uses.size(), gpu::kNone);
+    std::vector<TextureUse> uses;
+    for (size_t i = 0; i < use_places.size(); ++i)
+    {
+        TextureUse use = scene.texture_uses[i];
+        use.image = image_places[use.image];
+        if (use.image == gpu::kNone)
+            continue;
+        use_places[i] = uint32_t(uses.size());
+        uses.push_back(use);
+    }
+    scene.texture_uses = std::move(uses);
+    for (gpu::Material& m : scene.materials)
+        for (const auto& [member, stand_in] : kStandIns)
+            if (m.*member != gpu::kNone)
+                m.*member = use_places[m.*member];
 }
 
 std::vector<uint32_t> materialTriangleFlags(const SceneData& scene)

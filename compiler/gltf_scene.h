@@ -17,9 +17,9 @@ struct SceneNodes
     std::vector<MeshInstance> meshes; // in the order of the walk: parents first, siblings as listed
     std::vector<PunctualLight> lights;
     std::vector<CameraView> cameras;
-    std::vector<std::string> warnings; // full sentences
+    Warnings warnings;
 };
 
-/// @return kInvalid for indices out of range, a node reached twice (a cycle or two parents), damaged matrices or
-///         numbers that are not finite
+/// What cannot be placed (a transform that is not finite, say) is left out with a warning.
+/// @return kInvalid where there is no scene
 Result<SceneNodes> walkScene(const tinygltf::Model& model);

@@ -21,7 +21,7 @@ struct Job
     int mesh;
     size_t primitive;
     std::optional<MeshPrimitive> result;
-    std::optional<Error> error;
+    Warnings warnings;
     uint64_t generated_normals = 0;
     uint64_t generated_tangents = 0;
 };
@@ -35,12 +35,12 @@ std::vector<Job> primitivesInUse(const tinygltf::Model& model, const std::vector
     std::vector<Job> jobs;
     for (const int mesh : meshes)
         for (size_t p = 0; p < model.meshes[size_t(mesh)].primitives.size(); ++p)
-            jobs.push_back({mesh, p, {}, {}});
+            jobs.push_back({.mesh = mesh, .primitive = p, .result = {}, .warnings = {}});
     return jobs;
 }
 
 /// Reads the materials that `jobs` name and sets the jobs' material indices.
-Status readMaterials(const GltfFile& file, std::vector<Job>& jobs, ImportedScene& imported)
+void readMaterials(const GltfFile& file, std::vector<Job>& jobs, ImportedScene& imported)
 {
     std::set<int> in_use;
     const auto material = [&](const Job& job)
@@ -49,22 +49,21 @@ Status readMaterials(const GltfFile& file, std::vector<Job>& jobs, ImportedScene
         if (job.result)
             in_use.insert(std::max(material(job), -1));
     const std::vector<int> used(in_use.begin(), in_use.end());
-    if (Status status = importMaterials(file, used, imported.scene, imported.images); !status)
-        return status;
+    importMaterials(file, used, imported.scene, imported.images);
     for (Job& job : jobs)
         if (job.result)
             job.result->material =
                 uint32_t(std::lower_bound(used.begin(), used.end(), std::max(material(job), -1)) - used.begin());
-    return Success{};
 }
 
 void readGeometry(const tinygltf::Model& model, Job& job)
 {
+    const std::string pointer = fmt::format("/meshes/{}/primitives/{}", job.mesh, job.primitive);
     Result<std::optional<MeshPrimitive>> read =
-        readPrimitive(model, model.meshes[size_t(job.mesh)].primitives[job.primitive]);
+        readPrimitive(model, model.meshes[size_t(job.mesh)].primitives[job.primitive], pointer, job.warnings);
     if (!read)
-        job.error = Error{read.error().code,
-                          fmt::format("{} (/meshes/{}/primitives/{})", read.error().message, job.mesh, job.primitive)};
+        job.warnings.push_back({WarningKind::kBadGeometry, pointer, read.error().message, "the primitive is left out",
+                                read.error().code});
     else
         job.result = std::move(*read);
 }
@@ -88,17 +87,20 @@ void noteGaps(const GltfFile& file, const std::vector<Job>& jobs, SceneData& sce
     {
         const tinygltf::Primitive& primitive = file.model.meshes[size_t(job.mesh)].primitives[job.primitive];
         morphs |= !primitive.targets.empty();
-        if (!job.result)
+        if (!job.result && job.warnings.empty() && !primitive.attributes.empty()) // else it was damaged, and that is said
             ++scene.counts.dropped_primitives;
         scene.counts.generated_normals += job.generated_normals;
         scene.counts.generated_tangents += job.generated_tangents;
     }
     if (scene.counts.dropped_primitives > 0)
         scene.warnings.push_back(
-            fmt::format("{} primitives without a surface (points, lines, no positions) are left out",
-                        scene.counts.dropped_primitives));
+            {WarningKind::kLeftOut, "",
+             fmt::format("{} primitives without a surface (points, lines, no positions) are left out",
+                         scene.counts.dropped_primitives),
+             ""});
     if (morphs)
-        scene.warnings.push_back("morph targets are left out: meshes are compiled in their base shape");
+        scene.warnings.push_back(
+            {WarningKind::kLeftOut, "", "morph targets are left out: meshes are compiled in their base shape", ""});
 }
 } // namespace
 
@@ -120,10 +122,8 @@ Result<ImportedScene> importScene(const GltfFile& file)
     std::vector<Job> jobs = primitivesInUse(model, nodes->meshes);
     parallelFor(jobs.size(), [&](size_t i) { readGeometry(model, jobs[i]); });
     for (const Job& job : jobs)
-        if (job.error)
-            return *job.error;
-    if (const Status status = readMaterials(file, jobs, imported); !status)
-        return status.error();
+        scene.warnings.insert(scene.warnings.end(), job.warnings.begin(), job.warnings.end());
+    readMaterials(file, jobs, imported);
     parallelFor(jobs.size(), [&](size_t i) { completeGeometry(scene, jobs[i]); });
     noteGaps(file, jobs, scene);
 

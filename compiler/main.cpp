@@ -21,12 +21,15 @@ struct Arguments
     std::vector<std::string> views;
     std::string report;
     std::string compress = "none";
-    bool no_default_light = false;
+    std::string default_light = "auto";
+    bool strict = false;
     bool quiet = false;
 };
 
 int fail(const std::string& where, const Error& error)
 {
+    for (const std::string& detail : error.details)
+        fmt::print(stderr, "{}: error: {}\n", where, detail);
     fmt::print(stderr, "{}: error: {}\n", error.file.empty() ? where : error.file, error.message);
     return int(error.code);
 }
@@ -41,7 +44,12 @@ void declare(CLI::App& app, Arguments& a)
            "--view", a.views,
            "Camera: NAME=EX,EY,EZ,TX,TY,TZ,YFOV; eye, target (metres), vertical field of view (degrees). Repeatable")
         ->allow_extra_args(false); // else it takes the scene after it
-    app.add_flag("--no-default-light", a.no_default_light, "Leave a scene without any light dark");
+    app.add_option("--default-light", a.default_light,
+                   "auto, on or off: a sky and a sun besides the scene's own light; auto: where that would leave the "
+                   "picture black")
+        ->check(CLI::IsMember({"auto", "on", "off"}))
+        ->capture_default_str();
+    app.add_flag("--strict", a.strict, "Treat damaged items of the scene as errors");
     app.add_option("--report", a.report, "Write what was made as JSON");
     app.add_option("--compress", a.compress, "none, zstd or zstd:LEVEL (1-19)")->capture_default_str();
     app.add_flag("-q,--quiet", a.quiet, "Print errors only");
@@ -90,8 +98,8 @@ std::vector<std::string> provenance(const Arguments& a)
         text.push_back("--sun " + a.sun);
     for (const std::string& view : a.views)
         text.push_back("--view " + view);
-    if (a.no_default_light)
-        text.push_back("--no-default-light");
+    if (a.default_light != "auto")
+        text.push_back("--default-light " + a.default_light);
     if (a.compress != "none")
         text.push_back("--compress " + a.compress);
     return text;
@@ -103,7 +111,10 @@ Result<CompileOptions> toOptions(const Arguments& a)
     options.input = a.input;
     options.output =
         a.output.empty() ? std::filesystem::path(a.input).replace_extension(".lumi") : std::filesystem::path(a.output);
-    options.default_light = !a.no_default_light;
+    options.default_light = a.default_light == "on"    ? DefaultLight::kOn
+                            : a.default_light == "off" ? DefaultLight::kOff
+                                                       : DefaultLight::kAuto;
+    options.strict = a.strict;
     options.text = provenance(a);
     if (!a.environment.empty())
         options.environment = a.environment;

@@ -91,7 +91,7 @@ fb::MetaT makeMeta(const CompileOptions& options, const SceneData& scene, const 
     meta.provenance->generator = scene.generator;
     if (!scene.copyright.empty())
         meta.provenance->copyright.push_back(scene.copyright);
-    meta.provenance->warnings = scene.warnings;
+    meta.provenance->warnings = sentences(scene.warnings);
     meta.material_names = scene.material_names;
     const auto any = [&](uint32_t flag)
     {

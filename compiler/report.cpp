@@ -118,5 +118,12 @@ std::string reportJson(const CompileReport& report, const CompileOptions& option
         json["stages"].push_back({{"name", stage.name}, {"seconds", stage.seconds}});
     json["total_seconds"] = report.total_seconds;
     json["warnings"] = report.meta.provenance->warnings;
+    json["findings"] = ordered_json::array();
+    for (const Warning& warning : report.warnings)
+        json["findings"].push_back({{"kind", kindName(warning.kind)},
+                                    {"pointer", warning.pointer},
+                                    {"message", warning.message},
+                                    {"stand_in", warning.stand_in},
+                                    {"damage", isDamage(warning.kind)}});
     return json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }

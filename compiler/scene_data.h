@@ -1,6 +1,7 @@
 // What the compiler knows of a scene between reading glTF and writing the package.
 #pragma once
 #include "compiler/vec3d.h"
+#include "compiler/warnings.h"
 #include "format/gpu_scene.h"
 
 #include <cstdint>
@@ -89,7 +90,7 @@ struct SceneData
     std::string generator;
     std::string copyright;
     WorldFrame frame;
-    std::vector<std::string> warnings; // full sentences
+    Warnings warnings;
     WorldMesh mesh;
     std::vector<gpu::Material> materials; // *_texture members index texture_uses
     std::vector<std::string> material_names;

@@ -100,14 +100,15 @@ TEST(Accessor, RefusesWhatReachesOutside)
     EXPECT_TRUE(refused("buffer", 3, "bufferViews"));
 }
 
-TEST(Accessor, RefusesIndicesThatNameNoVertex)
+TEST(Accessor, TrianglesWhoseIndicesNameNoVertexAreLeftOut)
 {
     GltfBuilder builder;
-    const int indices = builder.accessor(std::vector<uint16_t>{0, 1, 3}, "SCALAR", 5123, 3);
+    const int indices = builder.accessor(std::vector<uint16_t>{0, 1, 3, 0, 1, 2}, "SCALAR", 5123, 6);
     builder.triangle({{"indices", indices}});
-    const auto imported = builder.import();
-    ASSERT_FALSE(imported);
-    EXPECT_EQ(imported.error().code, ExitCode::kInvalid);
-    EXPECT_NE(imported.error().message.find("vertex index 3"), std::string::npos) << imported.error().message;
+    const Result<SceneData> scene = builder.scene();
+    ASSERT_TRUE(scene) << scene.error().message;
+    EXPECT_EQ(scene->mesh.triangles.size(), 1u);
+    ASSERT_EQ(scene->warnings.size(), 1u);
+    EXPECT_EQ(scene->warnings[0].message, "1 of 2 triangles name vertices beyond the 3 that there are");
 }
 } // namespace

@@ -30,7 +30,7 @@ TEST(Extensions, UnknownUsedOnesAreListedInOneWarning)
     const auto imported = withExtensions({"KHR_materials_sheen", "KHR_texture_transform", "ACME_future"}, {});
     ASSERT_TRUE(imported) << imported.error().message;
     ASSERT_EQ(imported->scene.warnings.size(), 1u);
-    const std::string& warning = imported->scene.warnings[0];
+    const std::string warning = sentence(imported->scene.warnings[0]);
     EXPECT_NE(warning.find("KHR_materials_sheen"), std::string::npos) << warning;
     EXPECT_NE(warning.find("ACME_future"), std::string::npos) << warning;
     EXPECT_EQ(warning.find("KHR_texture_transform"), std::string::npos) << warning;

@@ -1,5 +1,7 @@
 #include "tests/compiler/gltf_builder.h"
 
+#include "compiler/gltf_material.h"
+
 #include "compiler/flatten.h"
 
 #define STB_IMAGE_WRITE_IMPLEMENTATION
@@ -167,13 +169,13 @@ Result<SceneData> GltfBuilder::scene() const
     Result<ImportedScene> imported = importScene(*file);
     if (!imported)
         return imported.error();
-    Result<std::vector<TextureImage>> images = decodeImages(*file, imported->images);
+    Result<std::vector<DecodedImage>> images = decodeImages(*file, imported->images);
     if (!images)
         return images.error();
+    takeImages(std::move(*images), imported->scene);
     Result<WorldMesh> mesh = flatten(*imported, imported->scene.counts, imported->scene.warnings);
     if (!mesh)
         return mesh.error();
-    imported->scene.images = std::move(*images);
     imported->scene.mesh = std::move(*mesh);
     return std::move(imported->scene);
 }

@@ -95,27 +95,19 @@ TEST(Hierarchy, HiddenNodesHideTheirChildren)
     expectNear(scene->mesh.positions[0], {0, 0, 0});
 }
 
-TEST(Hierarchy, RefusesCyclesSharedChildrenAndBadIndices)
+TEST(Hierarchy, ACycleLeavesNothingToDraw)
 {
-    const auto code = [](const char* key, const nlohmann::json& value)
+    for (const int child : {0, 1}) // its own child, its parent's parent
     {
         GltfBuilder builder;
         builder.triangle();
         builder.node({{"children", {0}}});
         builder.json["scenes"][0]["nodes"] = {1};
-        builder.json["nodes"][0][key] = value;
-        const auto imported = builder.import();
-        return imported ? ExitCode::kOk : imported.error().code;
-    };
-    EXPECT_EQ(code("name", "fine"), ExitCode::kOk);
-    EXPECT_EQ(code("children", {1}), ExitCode::kInvalid);
-    EXPECT_EQ(code("children", {0}), ExitCode::kInvalid);
-    EXPECT_EQ(code("children", {7}), ExitCode::kInvalid);
-    EXPECT_EQ(code("children", {-1}), ExitCode::kInvalid);
-    EXPECT_EQ(code("mesh", 5), ExitCode::kInvalid);
-    EXPECT_EQ(code("camera", 0), ExitCode::kInvalid);
-    EXPECT_EQ(code("translation", {1, 2}), ExitCode::kInvalid);
-    EXPECT_EQ(code("matrix", {1, 2, 3}), ExitCode::kInvalid);
+        builder.json["nodes"][0]["children"] = {child};
+        const Result<SceneData> scene = builder.scene();
+        ASSERT_FALSE(scene);
+        EXPECT_EQ(scene.error().code, ExitCode::kInvalid);
+    }
 }
 
 TEST(Hierarchy, SurvivesAChainOfAHundredThousandNodes)

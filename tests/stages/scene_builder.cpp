@@ -154,7 +154,7 @@ std::filesystem::path SceneBuilder::compile()
         state_->gltf.json["extensionsUsed"] = state_->extensions;
     state_->gltf.writeGltf(state_->folder / "scene.gltf");
     CompileOptions options{.input = state_->folder / "scene.gltf", .output = state_->folder / "scene.lumi"};
-    options.default_light = false;
+    options.default_light = DefaultLight::kOff;
     if (state_->has_environment)
         options.environment = state_->folder / "environment.exr";
     const auto report = ::compile(options);
