@@ -104,7 +104,7 @@ TEST(LightNeed, ASurfaceThatGlowsByNoiseLeavesItDark)
 TEST(LightNeed, OneHonestLampInADimRoomIsEnough)
 {
     Room lamp(3);
-    lamp.addQuad(lamp.glowing(1), 1.5f, 0.1f, 0, true); // 0.03 W
+    lamp.addQuad(lamp.glowing(1), 1.5f, 0.2f, 0, true); // 0.13 W
     EXPECT_FALSE(lamp.need().dark);
     EXPECT_TRUE(lamp.need().dim); // and a sentence says so
     Room candle(10);
@@ -133,10 +133,10 @@ TEST(LightNeed, ManySmallLightsAreAsOneThatIsAsLarge)
     const int list = tiles.accessor(indices, "SCALAR", 5123, size_t(count));
     tiles.node({{"mesh", tiles.mesh({{"attributes", {{"POSITION", p}}}, {"indices", list}, {"material", glow}})}});
     tiles.json["nodes"][1]["translation"] = {0, 1.9, 0}; // the camera, below the ceiling
-    // A square of side a at distance a above the floor's middle: its form factor there is 0.5534 (Hottel's rectangle,
-    // four quarters with both ratios 1/2: 4 x 0.1384), a tenth of the floor about there has no less than 0.95 of it.
+    // A square of side a at distance a above the floor's middle: its form factor there is 0.2394 (four quarters, each a
+    // rectangle over its corner with both ratios 1/2: 0.05986), a tenth of the floor about there has no less than 0.95 of it.
     const double spread = kPi * 4 / (4 * kPi * 12);
-    const double most = 0.5534 + spread / kPi;
+    const double most = 0.2394 + spread / kPi;
     EXPECT_LT(tiles.need().radiance, 1.01 * most);
     EXPECT_GT(tiles.need().radiance, 0.9 * most);
 }

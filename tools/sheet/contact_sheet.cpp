@@ -1,6 +1,7 @@
 #include "tools/sheet/contact_sheet.h"
 
 #include <algorithm>
+#include <cstddef>
 
 namespace
 {
@@ -24,7 +25,7 @@ void drawLabel(const std::string& label, uint32_t x, uint32_t y, uint32_t most_w
         for (uint32_t row = 0; row < 5 * kScale; ++row)
             for (uint32_t column = 0; column < 3 * kScale; ++column)
                 if ((kDigits[c - '0'][row / kScale] >> (2 - column / kScale) & 1) != 0)
-                    std::fill_n(sheet.rgb.begin() + 3 * ptrdiff_t((y + row) * size_t(sheet.width) + x + column), 3, uint8_t(255));
+                    std::fill_n(sheet.rgb.begin() + 3 * std::ptrdiff_t((y + row) * size_t(sheet.width) + x + column), 3, uint8_t(255));
         x += 4 * kScale;
     }
 }
@@ -56,8 +57,8 @@ Thumbnail contactSheet(const std::vector<Thumbnail>& thumbnails, uint32_t column
         const uint32_t y = i / columns * cell_height + kMargin;
         drawLabel(from.label, x, y + 2, width, sheet);
         for (uint32_t row = 0; row < from.height; ++row)
-            std::copy_n(from.rgb.begin() + 3 * ptrdiff_t(row * size_t(from.width)), size_t(3) * from.width,
-                        sheet.rgb.begin() + 3 * ptrdiff_t((y + kLabelHeight + row) * size_t(sheet.width) + x));
+            std::copy_n(from.rgb.begin() + 3 * std::ptrdiff_t(row * size_t(from.width)), size_t(3) * from.width,
+                        sheet.rgb.begin() + 3 * std::ptrdiff_t((y + kLabelHeight + row) * size_t(sheet.width) + x));
     }
     return sheet;
 }
