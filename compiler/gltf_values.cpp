@@ -12,7 +12,7 @@ using nlohmann::json;
 namespace
 {
 constexpr double kPi = std::numbers::pi;
-constexpr double kUnbounded = 1e20; // far above any use, and products of it with factors are still single-precision numbers
+constexpr double kUnbounded = 1e30; // far above any use; its products with factors and areas are single-precision numbers
 constexpr double kDefaultFov = kPi / 4;
 
 bool isNumber(const json& value)

@@ -173,29 +173,22 @@ double spreadPower(const WorldMesh& mesh, const LightTables& lights)
     return power / (4 * kPi * std::max(dot(diagonal, diagonal), 1e-30));
 }
 
-/// Irradiance at `point` by light `i`, were there nothing else.
+/// Irradiance at `point` by light `i`, were there nothing else. Lamps count as if they were aimed at it and it at them: who
+/// puts a lamp into a scene wants its light and no other, be it a narrow beam or one from behind.
 double irradiance(const LightTables& lights, size_t i, const Point& point, double environment)
 {
     const gpu::Light& light = lights.lights[i];
     if (light.kind == gpu::kLightEnvironment)
         return kPi * environment;
     if (light.kind == gpu::kLightDirectional)
-        return luminance(light.emission) * std::max(0.0, -dot(point.normal, toDouble(light.p1)));
+        return luminance(light.emission);
     const bool local = light.kind == gpu::kLightPoint || light.kind == gpu::kLightSpot;
     const Vec3d place = local ? toDouble(light.p0) : (toDouble(light.p0) + toDouble(light.p1) + toDouble(light.p2)) * (1.0 / 3);
     const double squared = dot(place - point.place, place - point.place);
     const Vec3d towards = unitOrZero(place - point.place);
     const double facing = std::max(0.0, dot(point.normal, towards));
     if (local)
-    {
-        double intensity = luminance(light.emission);
-        if (light.kind == gpu::kLightSpot)
-        {
-            const double cone = std::clamp(-dot(toDouble(light.p1), towards) * light.p2.x + light.p2.y, 0.0, 1.0);
-            intensity *= cone * cone;
-        }
-        return squared > 0 ? intensity * facing / squared : 0;
-    }
+        return luminance(light.emission) / std::max(squared, 1e-30);
     const bool both = light.kind == gpu::kLightTriangleTwoSided;
     const double exitance = lights.powers[i] / (areaOf(light.p0, light.p1, light.p2) * (both ? 2 : 1));
     const Vec3d front = unitOrZero(cross(toDouble(light.p1 - light.p0), toDouble(light.p2 - light.p0)));

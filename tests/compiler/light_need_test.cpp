@@ -65,7 +65,7 @@ TEST(LightNeed, WithoutLightItIsDarkAndSaysSo)
 TEST(LightNeed, OfAPointLightIsItsClosedForm)
 {
     // Far above a floor irradiance is I / d^2 everywhere on it, and once more I / D^2 with the diagonal D for what is
-    // spread; a white surface reflects a pi-th of the sum. Cosines and distances vary by side^2 / d^2 = 1 %.
+    // spread; a white surface reflects a pi-th of the sum. Distances vary by side^2 / d^2 = 1 %.
     Room room(1);
     room.addPoint(20, 10);
     EXPECT_NEAR(room.need().radiance, (20 / 100.0 + 20 / 102.0) / kPi, 0.02 * 0.4 / kPi);
@@ -110,6 +110,16 @@ TEST(LightNeed, OneHonestLampInADimRoomIsEnough)
     Room candle(10);
     candle.addPoint(1, 3);
     EXPECT_FALSE(candle.need().dark);
+}
+
+TEST(LightNeed, ANarrowBeamIsItsAuthorsLightWhereverItGoes)
+{
+    Room room(3);
+    room.addPoint(5, 2);
+    nlohmann::json& light = room.json["extensions"]["KHR_lights_punctual"]["lights"][0];
+    light["type"] = "spot";
+    light["spot"] = {{"innerConeAngle", 0.001}, {"outerConeAngle", 0.01}};
+    EXPECT_FALSE(room.need().dark); // its node's -z is horizontal: it does not even meet the floor
 }
 
 TEST(LightNeed, ManySmallLightsAreAsOneThatIsAsLarge)
