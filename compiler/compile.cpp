@@ -93,8 +93,9 @@ LightTables lightsOrDefault(const CompileOptions& options, const Bvh& bvh, Scene
 Error damageError(const Warnings& damage, std::string message)
 {
     Error error{ExitCode::kInvalid, std::move(message)};
-    for (const Warning& warning : damage)
+    for (Warning warning : damage)
     {
+        warning.stand_in.clear(); // nothing stands in where there is no package
         error.details.push_back(sentence(warning));
         if (warning.code == ExitCode::kIo && warning.pointer.starts_with("/buffers/"))
             error.code = ExitCode::kIo;

@@ -261,6 +261,9 @@ bool repairLight(const JsonPlace& light, Warnings& warnings)
     repairNumber(light, "intensity", 0, kUnbounded, warnings);
     repairFactor(light, {"color", 3, 0, 1, true}, warnings);
     repairOptional(light, "range", 0, "it reaches without end", warnings);
+    if (light.find("range") != nullptr)
+        warnings.push_back({WarningKind::kApproximated, light.at("range"), "a light's range is not honoured",
+                            "it reaches without end"});
     if (*type != "spot")
         return true;
     json* spot = light.find("spot");

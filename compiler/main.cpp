@@ -49,6 +49,9 @@ void declare(CLI::App& app, Arguments& a)
                    "picture black")
         ->check(CLI::IsMember({"auto", "on", "off"}))
         ->capture_default_str();
+    app.add_flag_callback("--no-default-light",
+                          [] { throw CLI::ValidationError("--no-default-light", "it is --default-light off now"); })
+        ->group(""); // not listed
     app.add_flag("--strict", a.strict, "Treat damaged items of the scene as errors");
     app.add_option("--report", a.report, "Write what was made as JSON");
     app.add_option("--compress", a.compress, "none, zstd or zstd:LEVEL (1-19)")->capture_default_str();
