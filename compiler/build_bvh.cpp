@@ -1,9 +1,12 @@
 #include "compiler/build_bvh.h"
 
 #include "compiler/bvh_tree.h"
+#include "compiler/large_memory.h"
+#include "compiler/parallel.h"
 #include "format/check.h"
 
 #include <embree3/rtcore.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <memory>
@@ -15,27 +18,33 @@ namespace
 /// What Embree's callbacks need to know.
 struct Source
 {
-    std::vector<std::array<gpu::vec3, 3>> corners; // by triangle
-    std::span<const uint32_t> flags;               // kTriangle*, likewise
-    float padding = 0;                             // metres, around every leaf
+    const WorldMesh& mesh;
+    std::span<const uint32_t> flags; // kTriangle*, by triangle
+    float padding = 0;               // metres, around every leaf
+
+    std::array<gpu::vec3, 3> corners(uint32_t triangle) const
+    {
+        const gpu::uvec3& v = mesh.triangles[triangle];
+        return {mesh.positions[v.x], mesh.positions[v.y], mesh.positions[v.z]};
+    }
+    Box box(uint32_t triangle) const
+    {
+        Box b;
+        for (const gpu::vec3& p : corners(triangle))
+            b.grow(p);
+        return b;
+    }
 };
 
-Source gatherSource(const WorldMesh& mesh, std::span<const uint32_t> triangle_flags)
+Source makeSource(const WorldMesh& mesh, std::span<const uint32_t> triangle_flags)
 {
-    Source source;
-    source.flags = triangle_flags;
     float largest = 0;
-    for (const gpu::uvec3& v : mesh.triangles)
-    {
-        source.corners.push_back({mesh.positions[v.x], mesh.positions[v.y], mesh.positions[v.z]});
-        for (const gpu::vec3& p : source.corners.back())
-            largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
-    }
+    for (const gpu::vec3& p : mesh.positions)
+        largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
     // A slab test works on differences of coordinates, whose rounding error is that of the largest one, and split
     // triangles have corners rounded to it. Boxes grown by twice that error are never missed, however flat or close to
     // zero they are.
-    source.padding = largest * 2 * std::numeric_limits<float>::epsilon();
-    return source;
+    return {mesh, triangle_flags, largest * 2 * std::numeric_limits<float>::epsilon()};
 }
 
 Box toBox(const RTCBuildPrimitive& p)
@@ -82,7 +91,7 @@ void splitPrimitive(const RTCBuildPrimitive* primitive, unsigned dimension, floa
 {
     Box left_box;
     Box right_box;
-    splitTriangleBox(static_cast<const Source*>(user)->corners[primitive->primID], toBox(*primitive), dimension,
+    splitTriangleBox(static_cast<const Source*>(user)->corners(primitive->primID), toBox(*primitive), dimension,
                      position, left_box, right_box);
     *left = toBounds(left_box);
     *right = toBounds(right_box);
@@ -99,25 +108,32 @@ struct BvhRelease
 using Device = std::unique_ptr<std::remove_pointer_t<RTCDevice>, DeviceRelease>;
 using EmbreeBvh = std::unique_ptr<std::remove_pointer_t<RTCBVH>, BvhRelease>;
 
-/// @param capacity of the result; what is left of it Embree fills with the parts that spatial splits make
-std::vector<RTCBuildPrimitive> buildPrimitives(const Source& source, size_t capacity)
+/// @param primitives [triangle_count] and more; what is left of it Embree fills with the parts that spatial splits make
+void fillPrimitives(const Source& source, RTCBuildPrimitive* primitives)
 {
-    std::vector<RTCBuildPrimitive> primitives(capacity);
-    for (uint32_t i = 0; i < source.corners.size(); ++i)
-    {
-        Box b;
-        for (const gpu::vec3& p : source.corners[i])
-            b.grow(p);
-        primitives[i] = {b.low.x, b.low.y, b.low.z, 0, b.high.x, b.high.y, b.high.z, i};
-    }
-    return primitives;
+    const size_t count = source.mesh.triangles.size();
+    constexpr size_t kBatch = 1 << 16;
+    parallelFor((count + kBatch - 1) / kBatch,
+                [&](size_t batch)
+                {
+                    for (size_t i = batch * kBatch; i < std::min(count, (batch + 1) * kBatch); ++i)
+                    {
+                        const Box b = source.box(uint32_t(i));
+                        primitives[i] = {b.low.x,  b.low.y,  b.low.z,  0,
+                                         b.high.x, b.high.y, b.high.z, uint32_t(i)};
+                    }
+                });
 }
 
 /// One triangle, or a part of one, in every leaf: collapse() joins leaves where that is cheaper, which costs rays 4 %
 /// less than leaving it to Embree.
 BinaryNode* buildBinary(RTCBVH bvh, const Source& source)
 {
-    std::vector<RTCBuildPrimitive> primitives = buildPrimitives(source, 2 * source.corners.size());
+    const size_t count = source.mesh.triangles.size();
+    const size_t capacity = 2 * count;
+    const auto primitives = std::make_unique_for_overwrite<RTCBuildPrimitive[]>(capacity);
+    preferHugePages(primitives.get(), capacity * sizeof(RTCBuildPrimitive));
+    fillPrimitives(source, primitives.get());
     RTCBuildArguments arguments = rtcDefaultBuildArguments();
     arguments.buildQuality = RTC_BUILD_QUALITY_HIGH;
     arguments.maxBranchingFactor = 2;
@@ -125,9 +141,9 @@ BinaryNode* buildBinary(RTCBVH bvh, const Source& source)
     arguments.minLeafSize = 1;
     arguments.maxLeafSize = 1;
     arguments.bvh = bvh;
-    arguments.primitives = primitives.data();
-    arguments.primitiveCount = source.corners.size();
-    arguments.primitiveArrayCapacity = primitives.size();
+    arguments.primitives = primitives.get();
+    arguments.primitiveCount = count;
+    arguments.primitiveArrayCapacity = capacity;
     arguments.createNode = createNode;
     arguments.setNodeChildren = setChildren;
     arguments.setNodeBounds = ignoreBounds;
@@ -141,7 +157,7 @@ BinaryNode* buildBinary(RTCBVH bvh, const Source& source)
 class Unsplit
 {
 public:
-    explicit Unsplit(const Source& source) : source_(source), seen_(source.corners.size()) {}
+    explicit Unsplit(const Source& source) : source_(source), seen_(source.mesh.triangles.size()) {}
 
     /// The tree with each triangle that has flags in one leaf, whole; null where nothing is left.
     BinaryNode* run(BinaryNode* node)
@@ -159,10 +175,7 @@ public:
         if (seen_[node->triangle])
             return nullptr;
         seen_[node->triangle] = true;
-        Box whole;
-        for (const gpu::vec3& p : source_.corners[node->triangle])
-            whole.grow(p);
-        node->box = padded(whole, source_);
+        node->box = padded(source_.box(node->triangle), source_);
         return node;
     }
 
@@ -176,10 +189,10 @@ Bvh buildBvh(const WorldMesh& mesh, std::span<const uint32_t> triangle_flags)
 {
     check(!mesh.triangles.empty() && triangle_flags.size() == mesh.triangles.size(), "{} triangles, {} flags",
           mesh.triangles.size(), triangle_flags.size());
-    const Device device(rtcNewDevice(nullptr));
+    const Device device(rtcNewDevice(fmt::format("threads={}", thread_limit).c_str()));
     check(device, "Embree error {}", int(rtcGetDeviceError(nullptr)));
     const EmbreeBvh memory(rtcNewBVH(device.get()));
-    const Source source = gatherSource(mesh, triangle_flags);
+    const Source source = makeSource(mesh, triangle_flags);
     BinaryNode* root = buildBinary(memory.get(), source);
     check(root, "Embree error {}", int(rtcGetDeviceError(device.get())));
     root = Unsplit(source).run(root);

@@ -190,6 +190,7 @@ LightTables buildLights(const SceneData& scene)
             ++tables.emissive_triangles;
         }
         tables.lights.push_back(c.light);
+        tables.powers.push_back(float(c.power));
     }
     tables.aliases = buildAliasTable(shares);
     return tables;

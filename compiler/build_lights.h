@@ -8,6 +8,7 @@ struct LightTables
     std::vector<gpu::AliasEntry> aliases;    // [lights.size()]
     std::vector<uint32_t> triangle_lights;   // [triangle_count] index into lights or gpu::kNone
     std::vector<gpu::CausticTarget> caustic_targets;
+    std::vector<float> powers;               // [lights.size()] W, luminance
     uint32_t emissive_triangles = 0;
     float total_power = 0; // W, luminance
 };

@@ -35,11 +35,19 @@ struct Box
     }
 };
 
+/// How collapse() represents an inner node of the binary tree.
+struct WideChoice
+{
+    uint8_t share_of_node = 0; // where it becomes a wide node, its first child's part of the four; 0: it becomes a leaf
+    std::array<uint8_t, gpu::kBvhWidth - 1> share_of_forest{}; // [n - 2]: first child's part of n trees; 0: n - 1 suffice
+};
+
 struct BinaryNode
 {
     Box box;                               // in a leaf as built, in an inner node once collapse() has been there
     std::array<BinaryNode*, 2> children{}; // null in a leaf
     uint32_t triangle = 0;                 // of a leaf, which holds it or a part of it
+    WideChoice choice;                     // of an inner node, once collapse() has been there
 
     bool isLeaf() const { return children[0] == nullptr; }
 };

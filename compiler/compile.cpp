@@ -2,13 +2,19 @@
 
 #include "compiler/build_bvh.h"
 #include "compiler/build_lights.h"
+#include "compiler/cached_bvh.h"
 #include "compiler/camera_views.h"
 #include "compiler/environment.h"
+#include "compiler/environment_map.h"
 #include "compiler/flatten.h"
 #include "compiler/gltf_material.h"
 #include "compiler/import_gltf.h"
+#include "compiler/large_memory.h"
+#include "compiler/light_need.h"
 #include "compiler/package_meta.h"
+#include "compiler/parallel.h"
 #include "compiler/texture_pages.h"
+#include "compiler/up_to_date.h"
 #include "compiler/world_frame.h"
 
 #include <fmt/format.h>
@@ -17,6 +23,7 @@
 #include <chrono>
 #include <new>
 
+#include <sys/resource.h>
 #include <unistd.h>
 
 namespace
@@ -61,28 +68,47 @@ Status addViewsAndLights(const CompileOptions& options, SceneData& scene)
         scene.lights.push_back(*options.sun);
     if (!options.environment)
         return Success{};
-    Result<EnvironmentImage> environment = loadEnvironment(*options.environment);
+    Result<LoadedEnvironment> environment = loadEnvironment(*options.environment, options.environment_scale);
     if (!environment)
         return environment.error();
-    scene.environment = std::move(*environment);
+    scene.environment = std::move(environment->image);
+    scene.environment->rotation = options.environment_rotation;
+    scene.warnings.insert(scene.warnings.end(), environment->warnings.begin(), environment->warnings.end());
     return Success{};
 }
 
-LightTables lightsOrDefault(const CompileOptions& options, SceneData& scene)
+LightTables lightsOrDefault(const CompileOptions& options, const Bvh& bvh, SceneData& scene)
 {
     LightTables lights = buildLights(scene);
-    if (!lights.lights.empty())
+    const bool chosen = options.environment || options.sun; // light from the command line
+    const LightNeed need = judgeLight(scene, bvh, lights);
+    const bool add = options.default_light == DefaultLight::kOn ||
+                     (options.default_light == DefaultLight::kAuto && !chosen && need.dark);
+    if (need.dark || need.dim || add)
+        scene.warnings.push_back({WarningKind::kDefaultLight, "", need.sentence,
+                                  add        ? "it gets the default sky and sun (--default-light off leaves them out)"
+                                  : need.dark ? "every picture of it will be black (--default-light on adds a sky and a sun)"
+                                              : "pictures of it will be dark (--default-light on adds a sky and a sun)"});
+    if (!add)
         return lights;
-    if (!options.default_light)
-    {
-        scene.warnings.push_back("the scene has no light at all: every picture of it will be black");
-        return lights;
-    }
-    scene.warnings.push_back(
-        "the scene has no light at all: it gets the default sky and sun (--no-default-light leaves it dark)");
-    scene.environment = defaultSky();
-    scene.lights = {defaultSun()};
+    if (!scene.environment)
+        scene.environment = defaultSky();
+    scene.lights.push_back(defaultSun());
     return buildLights(scene);
+}
+
+/// The error that damaged items are under --strict, or where nothing else is left.
+Error damageError(const Warnings& damage, std::string message)
+{
+    Error error{ExitCode::kInvalid, std::move(message)};
+    for (Warning warning : damage)
+    {
+        warning.stand_in.clear(); // nothing stands in where there is no package
+        error.details.push_back(sentence(warning));
+        if (warning.code == ExitCode::kIo && warning.pointer.starts_with("/buffers/"))
+            error.code = ExitCode::kIo;
+    }
+    return error;
 }
 
 /// Alpha only where a triangle's coverage can be below 1: by its material or its vertices' colours.
@@ -106,9 +132,10 @@ std::vector<uint32_t> triangleFlags(const SceneData& scene)
 
 std::vector<gpu::Triangle> packTriangles(const SceneData& scene, const LightTables& lights)
 {
-    std::vector<gpu::Triangle> triangles(scene.mesh.triangles.size());
-    for (size_t i = 0; i < triangles.size(); ++i)
-        triangles[i] = {scene.mesh.triangles[i], lights.triangle_lights[i]};
+    std::vector<gpu::Triangle> triangles;
+    reserveLarge(triangles, scene.mesh.triangles.size());
+    for (size_t i = 0; i < scene.mesh.triangles.size(); ++i)
+        triangles.push_back({scene.mesh.triangles[i], lights.triangle_lights[i]});
     return triangles;
 }
 
@@ -148,8 +175,23 @@ writePackage(const CompileOptions& options, const SceneData& scene, const Bvh& b
     return package::write(options.output, chunks, {options.zstd_level});
 }
 
-void summarize(const SceneData& scene, CompileReport& report)
+uint64_t peakBytes()
 {
+    rusage usage = {};
+    getrusage(RUSAGE_SELF, &usage);
+    return uint64_t(usage.ru_maxrss) * 1024;
+}
+
+void summarize(const CompileOptions& options, const SceneData& scene, CompileReport& report)
+{
+    if (options.cache != nullptr)
+    {
+        report.cache_hits = options.cache->hits();
+        report.cache_misses = options.cache->misses();
+    }
+    report.threads = thread_limit;
+    report.peak_bytes = peakBytes();
+    report.package_hash = packageHash(options.output);
     for (const PunctualLight& light : scene.lights)
         ++(light.kind == gpu::kLightPoint  ? report.point_lights
            : light.kind == gpu::kLightSpot ? report.spot_lights
@@ -161,6 +203,8 @@ void summarize(const SceneData& scene, CompileReport& report)
 
 Result<CompileReport> runPipeline(const CompileOptions& options)
 {
+    const Cache closed;
+    const Cache& cache = options.cache != nullptr ? *options.cache : closed;
     CompileReport report;
     Stopwatch watch(options, report.stages);
 
@@ -170,7 +214,7 @@ Result<CompileReport> runPipeline(const CompileOptions& options)
     watch.stage("read", fmt::format("{} meshes, {} materials, {} images", file->model.meshes.size(),
                                     file->model.materials.size(), file->images.size()));
 
-    Result<ImportedScene> imported = importScene(*file);
+    Result<ImportedScene> imported = importScene(*file, {options.scene, options.variant});
     if (!imported)
         return imported.error();
     SceneData& scene = imported->scene;
@@ -179,23 +223,33 @@ Result<CompileReport> runPipeline(const CompileOptions& options)
     watch.stage("geometry",
                 fmt::format("{} primitives, {} objects", imported->primitives.size(), imported->instances.size()));
 
-    Result<std::vector<TextureImage>> images = decodeImages(*file, imported->images);
+    Result<std::vector<DecodedImage>> images = decodeImages(*file, imported->images);
     if (!images)
         return images.error();
-    scene.images = std::move(*images);
+    takeImages(std::move(*images), scene);
     watch.stage("images", fmt::format("{} decoded", scene.images.size()));
 
     Result<WorldMesh> mesh = flatten(*imported, scene.counts, scene.warnings);
     if (!mesh)
-        return mesh.error();
+    {
+        const Warnings damage = damageAmong(scene.warnings);
+        return damage.empty() ? mesh.error() : damageError(damage, mesh.error().message);
+    }
     scene.mesh = std::move(*mesh);
     imported->primitives = {};
     watch.stage("mesh",
                 fmt::format("{} triangles, {} vertices", scene.mesh.triangles.size(), scene.mesh.positions.size()));
 
+    // Before it is read: where it changes meanwhile, the next run finds another content than this.
+    std::optional<ContentHash> environment_content;
+    if (options.environment)
+        environment_content = contentOf(*options.environment);
     if (const Status status = addViewsAndLights(options, scene); !status)
         return status.error();
-    const LightTables lights = lightsOrDefault(options, scene);
+    const Bvh bvh = cachedBvh(cache, scene.mesh, triangleFlags(scene));
+    watch.stage("bvh", fmt::format("{} nodes, SAH cost {:.1f}, depth {}", bvh.nodes.size(), bvh.sah_cost, bvh.depth));
+
+    const LightTables lights = lightsOrDefault(options, bvh, scene);
     std::optional<EnvironmentImportance> importance;
     if (scene.environment)
         importance = buildImportance(*scene.environment);
@@ -203,22 +257,26 @@ Result<CompileReport> runPipeline(const CompileOptions& options)
     watch.stage("lights",
                 fmt::format("{} lights, {} caustic targets", lights.lights.size(), lights.caustic_targets.size()));
 
-    const Bvh bvh = buildBvh(scene.mesh, triangleFlags(scene));
-    watch.stage("bvh", fmt::format("{} nodes, SAH cost {:.1f}, depth {}", bvh.nodes.size(), bvh.sah_cost, bvh.depth));
-
-    const TexturePages textures = buildTexturePages(scene.images, scene.texture_uses);
-    if (textures.resized > 0)
-        scene.warnings.push_back(fmt::format("{} images were resized so that {} texture pages suffice",
-                                             textures.resized, gpu::kTexturePageCount));
+    const TexturePages textures =
+        buildTexturePages(scene.images, scene.texture_uses, scene.materials, options.textures, cache);
+    if (textures.halved > 0)
+        scene.warnings.push_back({WarningKind::kApproximated, "",
+                                  fmt::format("{} very large images were halved so that {} texture pages suffice",
+                                              textures.halved, gpu::kTexturePageCount),
+                                  ""});
     watch.stage("textures", fmt::format("{} images, {} pages", scene.images.size(), textures.pages.size()));
 
+    if (const Warnings damage = damageAmong(scene.warnings); options.strict && !damage.empty())
+        return damageError(damage, fmt::format("{} items are damaged; without --strict the package is made", damage.size()));
+    report.warnings = scene.warnings;
     report.meta = makeMeta(options, scene, bvh, lights, textures, sky);
+    noteInputs(file->files->list(), environment_content, *report.meta.provenance);
     auto chunks = writePackage(options, scene, bvh, lights, textures, sky, report.meta);
     if (!chunks)
         return chunks.error().about(options.output.string());
     report.chunks = std::move(*chunks);
     watch.stage("write", options.output.filename().string());
-    summarize(scene, report);
+    summarize(options, scene, report);
     report.total_seconds = watch.total();
     return report;
 }

@@ -1,6 +1,9 @@
 // The compiler's pipeline: one glTF scene in, one package out.
 #pragma once
+#include "compiler/cache.h"
+#include "compiler/input_files.h"
 #include "compiler/scene_data.h"
+#include "compiler/texture_pages.h"
 #include "format/package_generated.h"
 #include "format/package_write.h"
 #include "format/result.h"
@@ -11,16 +14,31 @@
 #include <string>
 #include <vector>
 
+/// Whether the scene gets a sky and a sun besides its own light.
+enum class DefaultLight
+{
+    kAuto, // where its own light would leave the picture black, and no light comes from the command line
+    kOn,
+    kOff,
+};
+
 struct CompileOptions
 {
     std::filesystem::path input;  // .gltf or .glb
     std::filesystem::path output; // .lumi
+    std::string scene{};          // of the file, name or index; empty: its default
+    std::string variant{};        // of KHR_materials_variants; empty: none
     std::optional<std::filesystem::path> environment{};
+    float environment_rotation = 0; // radians about +Y, -pi to pi
+    float environment_scale = 1;    // > 0, of its radiance
     std::optional<PunctualLight> sun{};
     std::vector<CameraView> views{}; // in the file's coordinates; come before its own cameras
-    bool default_light = true;       // give a scene without any light a sky and a sun
+    DefaultLight default_light = DefaultLight::kAuto;
+    bool strict = false; // damaged items of the scene are an error
     int zstd_level = 0;              // 0: no compression
+    TextureCompression textures = TextureCompression::kBlocks;
     std::vector<std::string> text{}; // the options as given, for the package's provenance
+    const Cache* cache = nullptr;    // where costly results are looked for and kept; null: nowhere
     std::function<void(double seconds, const std::string& line)> progress{}; // after each stage; may be empty
 };
 
@@ -34,6 +52,7 @@ struct CompileStage
 struct CompileReport
 {
     lumicut::fb::MetaT meta;
+    Warnings warnings; // each of them; META has their sentences, summed
     uint32_t point_lights = 0;
     uint32_t spot_lights = 0;
     uint32_t directional_lights = 0;
@@ -43,10 +62,16 @@ struct CompileReport
     std::vector<package::WrittenChunk> chunks;
     std::vector<CompileStage> stages;
     double total_seconds = 0;
+    uint64_t package_hash = 0; // of the header, and by way of it of the whole package
+    unsigned threads = 0;      // that were allowed
+    uint64_t peak_bytes = 0;   // memory of the whole process so far
+    uint32_t cache_hits = 0;
+    uint32_t cache_misses = 0;
 };
 
 /// Compiles `options.input` and writes `options.output`, all or nothing. Equal input and options give equal bytes.
-/// @return errors as the stages give them; kDevice where memory runs out
+/// @return errors as the stages give them; kDevice where memory runs out. What was damaged is in the error's details where
+///         nothing is left to draw, and where options.strict makes it the error (kInvalid)
 Result<CompileReport> compile(const CompileOptions& options);
 
 /// What can be known before any work: suffixes, and whether the output's folder can be written to.

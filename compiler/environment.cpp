@@ -1,15 +1,12 @@
 #include "compiler/environment.h"
 
-#include "format/alias_table.h"
-#include "compiler/environment_files.h"
 #include "compiler/vector_math.h"
+#include "format/alias_table.h"
 #include "format/check.h"
 
 #include <algorithm>
-#include <cctype>
+#include <array>
 #include <cmath>
-#include <cstring>
-#include <fstream>
 #include <numbers>
 #include <numeric>
 
@@ -74,46 +71,7 @@ std::vector<double> filteredLuminance(const EnvironmentImage& image, uint32_t wi
     }
     return cells;
 }
-
-/// Negative radiance (wide-gamut colours) becomes 0; what no light can be is an error.
-Status sanitize(EnvironmentImage& image)
-{
-    for (size_t i = 0; i < image.texels.size(); ++i)
-    {
-        gpu::vec4& texel = image.texels[i];
-        for (float* channel : {&texel.x, &texel.y, &texel.z})
-        {
-            if (!std::isfinite(*channel))
-                return Error{ExitCode::kInvalid,
-                             fmt::format("texel ({}, {}) of the environment map is {}; repair the image first",
-                                         i % image.width, i / image.width, std::isnan(*channel) ? "NaN" : "infinite")};
-            *channel = std::max(*channel, 0.0f);
-        }
-        texel.w = 1;
-    }
-    return Success{};
-}
 } // namespace
-
-Result<EnvironmentImage> loadEnvironment(const std::filesystem::path& path)
-{
-    std::string suffix = path.extension().string();
-    std::transform(suffix.begin(), suffix.end(), suffix.begin(), [](unsigned char c) { return char(std::tolower(c)); });
-    if (suffix != ".exr" && suffix != ".hdr")
-        return Error{ExitCode::kUnsupported, "an environment map must be an OpenEXR (.exr) or Radiance (.hdr) file"};
-    std::error_code ignored;
-    if (std::filesystem::is_directory(path, ignored))
-        return Error{ExitCode::kIo, "this is a directory, not an environment map"};
-    if (!std::ifstream(path, std::ios::binary))
-        return Error{ExitCode::kIo, fmt::format("cannot open the environment map: {}", std::strerror(errno))};
-
-    Result<EnvironmentImage> image = suffix == ".exr" ? readExr(path) : readHdr(path);
-    if (!image)
-        return image;
-    if (Status status = sanitize(*image); !status)
-        return status.error();
-    return image;
-}
 
 EnvironmentImage defaultSky()
 {

@@ -1,12 +1,6 @@
-// Environment maps: reading .exr and .hdr, the default sky, and the importance grid.
+// Environment light: the default sky, a map's mean and its importance grid.
 #pragma once
 #include "compiler/scene_data.h"
-#include "format/result.h"
-
-#include <filesystem>
-
-/// Reads an equirectangular map. Negative texels become 0; NaN or infinite ones are an error (kInvalid).
-Result<EnvironmentImage> loadEnvironment(const std::filesystem::path& path);
 
 /// The sky a scene without any light gets: smooth, blue above, grey-brown below. Stated in the report.
 EnvironmentImage defaultSky();

@@ -1,6 +1,9 @@
 #include "compiler/flatten.h"
 
 #include "compiler/encode.h"
+#include "compiler/gltf_material.h"
+#include "compiler/large_memory.h"
+#include "compiler/tangents.h"
 #include "format/check.h"
 
 #include <fmt/format.h>
@@ -35,23 +38,37 @@ bool isDegenerate(gpu::vec3 a, gpu::vec3 b, gpu::vec3 c)
 class TriangleSet
 {
 public:
-    explicit TriangleSet(size_t expected) : slots_(std::bit_ceil(std::max<size_t>(2 * expected, 16)), kUnset) {}
+    explicit TriangleSet(size_t expected)
+    {
+        const size_t size = std::bit_ceil(std::max<size_t>(expected + expected / 2, 16));
+        reserveLarge(slots_, size);
+        slots_.resize(size, kEmpty);
+    }
+
+    /// Of three positions in their order, wherever it starts, and the material.
+    static uint64_t hashOf(gpu::vec3 a, gpu::vec3 b, gpu::vec3 c, uint32_t material)
+    {
+        uint64_t hash = 0x9e3779b97f4a7c15u;
+        for (const uint32_t k : keyOf(a, b, c, material))
+            hash = (hash ^ k) * 0xff51afd7ed558ccdu, hash ^= hash >> 32;
+        return hash;
+    }
+
+    /// The table is larger than caches: says that add() will come to this hash soon.
+    void prefetch(uint64_t hash) const { __builtin_prefetch(&slots_[hash & (slots_.size() - 1)]); }
 
     /// Adds triangle `index` unless an equal one is there. @return whether it was added
-    bool add(const WorldMesh& mesh, uint32_t index)
+    bool add(const WorldMesh& mesh, uint32_t index, uint64_t hash)
     {
-        const Key key = keyOf(mesh, index);
-        uint64_t hash = 0x9e3779b97f4a7c15u;
-        for (const uint32_t k : key)
-            hash = (hash ^ k) * 0xff51afd7ed558ccdu, hash ^= hash >> 32;
+        const uint64_t entry = (hash & kTagMask) | index;
         for (size_t slot = hash & (slots_.size() - 1);; slot = (slot + 1) & (slots_.size() - 1))
         {
-            if (slots_[slot] == kUnset)
+            if (slots_[slot] == kEmpty)
             {
-                slots_[slot] = index;
+                slots_[slot] = entry;
                 return true;
             }
-            if (keyOf(mesh, slots_[slot]) == key)
+            if ((slots_[slot] & kTagMask) == (hash & kTagMask) && keyOf(mesh, uint32_t(slots_[slot])) == keyOf(mesh, index))
                 return false;
         }
     }
@@ -60,25 +77,32 @@ private:
     using Corner = std::array<uint32_t, 3>;
     using Key = std::array<uint32_t, 10>; // three positions from the smallest on, material
 
+    static constexpr uint64_t kTagMask = 0xffffffff00000000u; // of the hash, before the triangle's index
+    static constexpr uint64_t kEmpty = kUnset;                // no triangle has this index
+
     static Key keyOf(const WorldMesh& mesh, uint32_t index)
     {
         const gpu::uvec3 t = mesh.triangles[index];
-        const auto bits = [&](uint32_t v) // adding 0 turns -0 into 0
+        return keyOf(mesh.positions[t.x], mesh.positions[t.y], mesh.positions[t.z], mesh.materials[index]);
+    }
+
+    static Key keyOf(gpu::vec3 a, gpu::vec3 b, gpu::vec3 c, uint32_t material)
+    {
+        const auto bits = [](gpu::vec3 p) // adding 0 turns -0 into 0
         {
-            const gpu::vec3 p = mesh.positions[v];
             return Corner{std::bit_cast<uint32_t>(p.x + 0.0f), std::bit_cast<uint32_t>(p.y + 0.0f),
                           std::bit_cast<uint32_t>(p.z + 0.0f)};
         };
-        std::array<Corner, 3> corners{bits(t.x), bits(t.y), bits(t.z)};
+        std::array<Corner, 3> corners{bits(a), bits(b), bits(c)};
         std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
         Key key;
-        for (size_t c = 0; c < 3; ++c)
-            std::copy(corners[c].begin(), corners[c].end(), key.begin() + ptrdiff_t(3 * c));
-        key[9] = mesh.materials[index];
+        for (size_t i = 0; i < 3; ++i)
+            std::copy(corners[i].begin(), corners[i].end(), key.begin() + ptrdiff_t(3 * i));
+        key[9] = material;
         return key;
     }
 
-    std::vector<uint32_t> slots_;
+    std::vector<uint64_t> slots_;
 };
 
 size_t triangleTotal(const ImportedScene& imported)
@@ -96,20 +120,37 @@ public:
     Flattener(const SceneData& scene, size_t triangle_total, ImportCounts& counts)
         : scene_(scene), counts_(counts), seen_(triangle_total)
     {
+        reserveLarge(mesh_.triangles, triangle_total);
+        reserveLarge(mesh_.materials, triangle_total);
+        reserveLarge(mesh_.objects, triangle_total);
+        reserveLarge(mesh_.positions, triangle_total); // of closed meshes half as many; untouched memory costs nothing
+        reserveLarge(mesh_.attributes, triangle_total);
     }
 
-    Status add(const MeshPrimitive& primitive, const Transform& to_world, uint32_t object)
+    /// @return false where nothing was added: vertices are beyond the range of numbers
+    bool add(const MeshPrimitive& primitive, const Transform& to_world, uint32_t object)
     {
         transformVertices(primitive, to_world);
-        for (const gpu::vec3 p : world_)
-            if (!isFinite(p))
-                return Error{ExitCode::kInvalid, "a node's transform moves vertices beyond the range of numbers"};
+        if (!std::all_of(world_.begin(), world_.end(), [](gpu::vec3 p) { return isFinite(p); }))
+            return false;
         for (std::vector<uint32_t>& slots : slots_)
             slots.assign(primitive.positions.size(), kUnset);
         const bool mirrored = to_world.determinant() < 0;
-        for (const gpu::uvec3 t : primitive.triangles)
-            addTriangle(primitive, mirrored, object, mirrored ? gpu::uvec3{t.x, t.z, t.y} : t);
-        return Success{};
+        const auto wound = [&](size_t i)
+        {
+            const gpu::uvec3 t = primitive.triangles[i];
+            return mirrored ? gpu::uvec3{t.x, t.z, t.y} : t;
+        };
+        const auto hash = [&](gpu::uvec3 t)
+        { return TriangleSet::hashOf(world_[t.x], world_[t.y], world_[t.z], primitive.material); };
+        constexpr size_t kAhead = 8;
+        for (size_t i = 0; i < primitive.triangles.size(); ++i)
+        {
+            if (i + kAhead < primitive.triangles.size())
+                seen_.prefetch(hash(wound(i + kAhead)));
+            addTriangle(primitive, mirrored, object, wound(i), hash(wound(i)));
+        }
+        return true;
     }
 
     WorldMesh take() { return std::move(mesh_); }
@@ -149,7 +190,7 @@ private:
         return any;
     }
 
-    void addTriangle(const MeshPrimitive& primitive, bool mirrored, uint32_t object, gpu::uvec3 t)
+    void addTriangle(const MeshPrimitive& primitive, bool mirrored, uint32_t object, gpu::uvec3 t, uint64_t hash)
     {
         if (isDegenerate(world_[t.x], world_[t.y], world_[t.z]))
         {
@@ -176,7 +217,7 @@ private:
         mesh_.triangles.push_back({vertex(t.x, 0), vertex(t.y, 1), vertex(t.z, 2)});
         mesh_.materials.push_back(primitive.material);
         mesh_.objects.push_back(object);
-        if (seen_.add(mesh_, uint32_t(mesh_.triangles.size() - 1)))
+        if (seen_.add(mesh_, uint32_t(mesh_.triangles.size() - 1), hash))
         {
             flipped_triangles_ += flipped;
             return;
@@ -205,7 +246,7 @@ private:
     bool negativeBitangent(const MeshPrimitive& from, bool mirrored, uint32_t v, gpu::uvec3 t, bool flipped) const
     {
         const bool given = (from.tangents[v].w < 0) != mirrored;
-        const uint32_t map = scene_.materials[from.material].normal_texture;
+        const uint32_t map = tangentTexture(scene_.materials[from.material]);
         if (!flipped || map == gpu::kNone)
             return given != flipped;
         const float sign = handedness(from, t, scene_.texture_uses[map]);
@@ -255,7 +296,7 @@ private:
 };
 } // namespace
 
-Result<WorldMesh> flatten(const ImportedScene& imported, ImportCounts& counts, std::vector<std::string>& warnings)
+Result<WorldMesh> flatten(const ImportedScene& imported, ImportCounts& counts, Warnings& warnings)
 {
     const size_t total = triangleTotal(imported);
     if (total > kMaxTriangles)
@@ -264,29 +305,35 @@ Result<WorldMesh> flatten(const ImportedScene& imported, ImportCounts& counts, s
             fmt::format("it has {} triangles with all its instances; at most {} are supported", total, kMaxTriangles)};
     Flattener flattener(imported.scene, total, counts);
     uint32_t object = 0;
+    size_t beyond = 0;
     for (const ImportedInstance& instance : imported.instances)
     {
         for (size_t p = 0; p < instance.primitive_count; ++p)
-            if (const Status status =
-                    flattener.add(imported.primitives[instance.first_primitive + p], instance.to_world, object);
-                !status)
-                return status.error();
+            beyond += !flattener.add(imported.primitives[instance.first_primitive + p], instance.to_world, object);
         ++object;
     }
+    if (beyond > 0)
+        warnings.push_back({WarningKind::kBadGeometry, "",
+                            fmt::format("nodes move {} primitives beyond the range of numbers", beyond), "they are left out"});
     WorldMesh mesh = flattener.take();
     if (mesh.triangles.empty())
         return Error{ExitCode::kInvalid, "its default scene holds no triangles, so there is nothing to render"};
     mesh.object_count = object;
     if (flattener.flippedTriangles() > 0)
-        warnings.push_back(fmt::format("{} of {} triangles have normals against their winding; they were flipped",
-                                       flattener.flippedTriangles(), mesh.triangles.size()));
+        warnings.push_back({WarningKind::kApproximated, "",
+                            fmt::format("{} of {} triangles have normals against their winding; they were flipped",
+                                        flattener.flippedTriangles(), mesh.triangles.size()),
+                            ""});
     if (flattener.repairedNormals() > 0)
-        warnings.push_back(
-            fmt::format("{} vertex normals have no direction and were replaced by that of their triangle",
-                        flattener.repairedNormals()));
+        warnings.push_back({WarningKind::kBadGeometry, "",
+                            fmt::format("{} vertex normals have no direction and were replaced by that of their triangle",
+                                        flattener.repairedNormals()),
+                            ""});
     if (flattener.repairedValues() > 0)
-        warnings.push_back(fmt::format("{} texture coordinates or vertex colours are not finite and became 0",
-                                       flattener.repairedValues()));
+        warnings.push_back({WarningKind::kBadGeometry, "",
+                            fmt::format("{} texture coordinates or vertex colours are not finite and became 0",
+                                        flattener.repairedValues()),
+                            ""});
     return mesh;
 }
 

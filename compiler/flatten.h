@@ -6,8 +6,9 @@
 /// and material), counts them, repairs normals without a direction, flips those of triangles whose three normals are
 /// all behind their winding (vertices that are shared with other triangles are split), and drops vertices that nothing
 /// uses. Objects that will move one day do not come here: they keep their own mesh.
-/// @return kInvalid where nothing is left, or positions leave the range of floats
-Result<WorldMesh> flatten(const ImportedScene& imported, ImportCounts& counts, std::vector<std::string>& warnings);
+/// Primitives that a transform moves beyond the range of floats are left out with a warning.
+/// @return kInvalid where nothing is left
+Result<WorldMesh> flatten(const ImportedScene& imported, ImportCounts& counts, Warnings& warnings);
 
 struct Bounds
 {

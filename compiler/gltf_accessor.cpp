@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <cstring>
+#include <limits>
+#include <optional>
+#include <type_traits>
 
 namespace
 {
@@ -84,33 +87,53 @@ Result<ByteView> elementBytes(const tinygltf::Model& model, int buffer_view, siz
     return ByteView{view->data + offset, view->bytes - offset, stride};
 }
 
-Result<std::vector<uint32_t>> readUnsigned(const ByteView& bytes, size_t count, int component_type, int accessor)
+/// `elements` of a component type, or nothing where it is unknown or `Convert` does not take it.
+template <typename To, typename Convert>
+std::optional<std::vector<To>> convertElements(const ByteView& elements, size_t count, uint32_t components,
+                                               int component_type, const Convert& convert)
 {
-    std::vector<uint32_t> values(count);
-    bool integers = true;
-    const bool known = withComponentType(component_type,
-                                         [&]<typename From>(From)
-                                         {
-                                             if constexpr (std::is_unsigned_v<From>)
-                                                 copyElements<From>(bytes, count, 1, values.data(),
-                                                                    [](From v) { return uint32_t(v); });
-                                             else
-                                                 integers = false;
-                                         });
-    if (!known || !integers)
-        return invalid(accessor, fmt::format("component type {} is not allowed for indices", component_type));
-    return values;
+    std::vector<To> values(count * components);
+    bool taken = true;
+    const bool known =
+        withComponentType(component_type,
+                          [&]<typename From>(From)
+                          {
+                              if constexpr (std::is_invocable_v<Convert, From>)
+                                  copyElements<From>(elements, count, components, values.data(), convert);
+                              else
+                                  taken = false;
+                          });
+    return known && taken ? std::optional(std::move(values)) : std::nullopt;
 }
 
+/// Of indices: unsigned integers only.
+struct ToIndex
+{
+    template <typename From>
+    requires std::is_unsigned_v<From> uint32_t operator()(From value) const { return value; }
+};
+
+struct ToFloat
+{
+    bool normalized;
+
+    template <typename From>
+    float operator()(From value) const
+    {
+        return toFloat(value, normalized);
+    }
+};
+
 /// Replaces the elements that the sparse part of `source` names.
-Status applySparse(const tinygltf::Model& model, int accessor, FloatArray& array)
+template <typename To, typename Convert>
+Status applySparse(const tinygltf::Model& model, int accessor, uint32_t components, const Convert& convert,
+                   std::vector<To>& elements)
 {
     const tinygltf::Accessor& source = model.accessors[size_t(accessor)];
     const auto& sparse = source.sparse;
     const int index_bytes = tinygltf::GetComponentSizeInBytes(uint32_t(sparse.indices.componentType));
-    const size_t element_bytes =
-        array.components * size_t(tinygltf::GetComponentSizeInBytes(uint32_t(source.componentType)));
-    if (sparse.count < 0 || size_t(sparse.count) > array.count || index_bytes <= 0 || sparse.indices.byteOffset < 0 ||
+    const size_t element_bytes = components * size_t(tinygltf::GetComponentSizeInBytes(uint32_t(source.componentType)));
+    if (sparse.count < 0 || size_t(sparse.count) > source.count || index_bytes <= 0 || sparse.indices.byteOffset < 0 ||
         sparse.values.byteOffset < 0)
         return invalid(accessor, "the sparse part of an accessor is damaged");
     const size_t count = size_t(sparse.count);
@@ -122,24 +145,50 @@ Status applySparse(const tinygltf::Model& model, int accessor, FloatArray& array
         elementBytes(model, sparse.values.bufferView, size_t(sparse.values.byteOffset), count, element_bytes, accessor);
     if (!value_view)
         return value_view.error();
-    const auto indices = readUnsigned(*index_view, count, sparse.indices.componentType, accessor);
-    if (!indices)
-        return indices.error();
-    std::vector<float> values(count * array.components);
-    withComponentType(source.componentType,
-                      [&]<typename From>(From)
-                      {
-                          copyElements<From>(*value_view, count, array.components, values.data(),
-                                             [&](From v) { return toFloat(v, source.normalized); });
-                      });
+    const auto indices = convertElements<uint32_t>(*index_view, count, 1, sparse.indices.componentType, ToIndex{});
+    const auto values = convertElements<To>(*value_view, count, components, source.componentType, convert);
+    if (!indices || !values)
+        return invalid(accessor, "the sparse part of an accessor is of a type that is not allowed");
     for (size_t i = 0; i < count; ++i)
     {
-        if ((*indices)[i] >= array.count)
+        if ((*indices)[i] >= source.count)
             return invalid(accessor, fmt::format("sparse index {} is out of range", (*indices)[i]));
-        std::copy_n(values.begin() + ptrdiff_t(i * array.components), array.components,
-                    array.values.begin() + ptrdiff_t((*indices)[i] * array.components));
+        std::copy_n(values->begin() + ptrdiff_t(i * components), components,
+                    elements.begin() + ptrdiff_t((*indices)[i] * size_t(components)));
     }
     return Success{};
+}
+
+/// All elements of an accessor: those of its buffer view, or zeros without one, with its sparse part put in.
+template <typename To, typename Convert>
+Result<std::vector<To>> readElements(const tinygltf::Model& model, int accessor, uint32_t components,
+                                     const Convert& convert)
+{
+    const tinygltf::Accessor& source = model.accessors[size_t(accessor)];
+    std::vector<To> elements;
+    if (source.bufferView < 0)
+    {
+        if (source.count > kMaxZeroElements)
+            return invalid(accessor, "an accessor without data has too many elements");
+        elements.resize(source.count * components);
+    }
+    else
+    {
+        const int component_bytes = tinygltf::GetComponentSizeInBytes(uint32_t(source.componentType));
+        const auto view = elementBytes(model, source.bufferView, source.byteOffset, source.count,
+                                       components * size_t(std::max(component_bytes, 1)), accessor);
+        if (!view)
+            return view.error();
+        auto converted = convertElements<To>(*view, source.count, components, source.componentType, convert);
+        if (!converted)
+            return invalid(accessor, fmt::format("component type {} is not allowed for {}", source.componentType,
+                                                 std::is_same_v<To, float> ? "vertex data" : "indices"));
+        elements = std::move(*converted);
+    }
+    if (source.sparse.isSparse)
+        if (const Status status = applySparse(model, accessor, components, convert, elements); !status)
+            return status.error();
+    return elements;
 }
 
 Result<const tinygltf::Accessor*> findAccessor(const tinygltf::Model& model, int accessor)
@@ -158,36 +207,14 @@ Result<FloatArray> readFloats(const tinygltf::Model& model, int accessor, uint32
         return found.error();
     const tinygltf::Accessor& source = **found;
     const int components = tinygltf::GetNumComponentsInType(uint32_t(source.type));
-    const int component_bytes = tinygltf::GetComponentSizeInBytes(uint32_t(source.componentType));
     if (components < int(min_components) || components > int(max_components) || source.type == TINYGLTF_TYPE_MAT2)
         return invalid(accessor,
                        fmt::format("an accessor of {} to {} components is expected", min_components, max_components));
-    FloatArray array{uint32_t(components), source.count, {}};
-    if (source.bufferView < 0)
-    {
-        if (source.count > kMaxZeroElements)
-            return invalid(accessor, "an accessor without data has too many elements");
-        array.values.resize(array.count * array.components);
-    }
-    else
-    {
-        const auto view = elementBytes(model, source.bufferView, source.byteOffset, source.count,
-                                       size_t(components) * size_t(std::max(component_bytes, 1)), accessor);
-        if (!view)
-            return view.error();
-        array.values.resize(array.count * array.components);
-        if (!withComponentType(source.componentType,
-                               [&]<typename From>(From)
-                               {
-                                   copyElements<From>(*view, array.count, array.components, array.values.data(),
-                                                      [&](From v) { return toFloat(v, source.normalized); });
-                               }))
-            return invalid(accessor, fmt::format("component type {} is unknown", source.componentType));
-    }
-    if (source.sparse.isSparse)
-        if (const Status status = applySparse(model, accessor, array); !status)
-            return status.error();
-    return array;
+    Result<std::vector<float>> values =
+        readElements<float>(model, accessor, uint32_t(components), ToFloat{source.normalized});
+    if (!values)
+        return values.error();
+    return FloatArray{uint32_t(components), source.count, std::move(*values)};
 }
 
 Result<std::vector<uint32_t>> readIndices(const tinygltf::Model& model, int accessor)
@@ -195,13 +222,7 @@ Result<std::vector<uint32_t>> readIndices(const tinygltf::Model& model, int acce
     const auto found = findAccessor(model, accessor);
     if (!found)
         return found.error();
-    const tinygltf::Accessor& source = **found;
-    if (source.type != TINYGLTF_TYPE_SCALAR || source.sparse.isSparse)
-        return invalid(accessor, "indices must be a plain scalar accessor");
-    const int bytes = tinygltf::GetComponentSizeInBytes(uint32_t(source.componentType));
-    const auto view =
-        elementBytes(model, source.bufferView, source.byteOffset, source.count, size_t(std::max(bytes, 1)), accessor);
-    if (!view)
-        return view.error();
-    return readUnsigned(*view, source.count, source.componentType, accessor);
+    if ((*found)->type != TINYGLTF_TYPE_SCALAR)
+        return invalid(accessor, "indices must be a scalar accessor");
+    return readElements<uint32_t>(model, accessor, 1, ToIndex{});
 }

@@ -17,5 +17,5 @@ struct FloatArray
 Result<FloatArray> readFloats(const tinygltf::Model& model, int accessor, uint32_t min_components,
                               uint32_t max_components);
 
-/// Reads a scalar accessor of unsigned integers.
+/// Reads a scalar accessor of unsigned integers, sparse or not.
 Result<std::vector<uint32_t>> readIndices(const tinygltf::Model& model, int accessor);

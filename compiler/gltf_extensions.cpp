@@ -10,24 +10,34 @@
 
 namespace
 {
-constexpr std::array<std::string_view, 14> kHonoured{
+constexpr std::array kHonoured = std::to_array<std::string_view>({
     "EXT_mesh_gpu_instancing",
+    "EXT_meshopt_compression",
     "EXT_texture_webp",
     "KHR_draco_mesh_compression",
     "KHR_lights_punctual",
+    "KHR_materials_anisotropy",
+    "KHR_materials_clearcoat",
+    "KHR_materials_diffuse_transmission",
+    "KHR_materials_dispersion",
     "KHR_materials_emissive_strength",
     "KHR_materials_ior",
+    "KHR_materials_iridescence",
     "KHR_materials_pbrSpecularGlossiness",
+    "KHR_materials_sheen",
     "KHR_materials_specular",
     "KHR_materials_transmission",
     "KHR_materials_unlit",
+    "KHR_materials_variants",
     "KHR_materials_volume",
     "KHR_mesh_quantization",
+    "KHR_meshopt_compression",
     "KHR_node_visibility",
+    "KHR_texture_basisu",
     "KHR_texture_transform",
-};
+});
 // Leaving these out keeps the picture as its author meant it to be without a choice of the user.
-constexpr std::array<std::string_view, 3> kHarmless{"KHR_materials_variants", "KHR_xmp", "KHR_xmp_json_ld"};
+constexpr std::array<std::string_view, 2> kHarmless{"KHR_xmp", "KHR_xmp_json_ld"};
 
 template <size_t n>
 bool contains(const std::array<std::string_view, n>& list, std::string_view name)
@@ -54,21 +64,13 @@ Result<std::set<std::string>> names(const nlohmann::json& document, const char* 
 
 std::string refusal(const std::string& name)
 {
-    if (name == "KHR_texture_basisu")
-        return "its textures are there as KTX2 (Basis Universal) only, which is not supported; export them as PNG, "
-               "JPEG "
-               "or WebP (required extension KHR_texture_basisu)";
-    if (name == "EXT_meshopt_compression" || name == "KHR_meshopt_compression")
-        return fmt::format("its geometry is meshopt-compressed, which is not supported; export it uncompressed or with "
-                           "Draco (required extension {})",
-                           name);
     return fmt::format(
         "it requires the extension {}, which is not supported; export the scene without it (/extensionsRequired)",
         name.substr(0, 100));
 }
 } // namespace
 
-Status checkExtensions(const nlohmann::json& document, std::vector<std::string>& warnings)
+Status checkExtensions(const nlohmann::json& document, Warnings& warnings)
 {
     const Result<std::set<std::string>> required = names(document, "extensionsRequired");
     const Result<std::set<std::string>> used = names(document, "extensionsUsed");
@@ -82,6 +84,8 @@ Status checkExtensions(const nlohmann::json& document, std::vector<std::string>&
         if (!contains(kHonoured, name) && !contains(kHarmless, name))
             dropped.push_back(name);
     if (!dropped.empty())
-        warnings.push_back(fmt::format("extensions that are not supported are left out: {}", fmt::join(dropped, ", ")));
+        warnings.push_back(
+            {WarningKind::kLeftOut, "/extensionsUsed",
+             fmt::format("extensions that are not supported are left out: {}", fmt::join(dropped, ", ")), ""});
     return Success{};
 }

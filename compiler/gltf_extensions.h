@@ -1,6 +1,6 @@
 // Which glTF extensions the compiler honours.
 #pragma once
-#include "format/result.h"
+#include "compiler/warnings.h"
 
 #include <nlohmann/json.hpp>
 
@@ -9,4 +9,4 @@
 
 /// @return kUnsupported naming the first required extension that is not honoured; otherwise adds one warning that
 ///         lists what the file uses and the compiler drops
-Status checkExtensions(const nlohmann::json& document, std::vector<std::string>& warnings);
+Status checkExtensions(const nlohmann::json& document, Warnings& warnings);

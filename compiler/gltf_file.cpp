@@ -1,190 +1,19 @@
 #include "compiler/gltf_file.h"
 
+#include "compiler/gltf_buffers.h"
+#include "compiler/gltf_document.h"
 #include "compiler/gltf_extensions.h"
+#include "compiler/gltf_repair.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
-#include <fstream>
-#include <optional>
-#include <system_error>
 
 using nlohmann::json;
 using Bytes = std::vector<unsigned char>;
 
 namespace
 {
-constexpr int kMaxJsonDepth = 128; // tinygltf walks extensions recursively
-
-struct Container
-{
-    std::string_view json; // borrowed
-    std::optional<ByteView> bin;
-};
-
-uint32_t readU32(const Bytes& bytes, size_t offset)
-{
-    return uint32_t(bytes[offset]) | uint32_t(bytes[offset + 1]) << 8 | uint32_t(bytes[offset + 2]) << 16 |
-           uint32_t(bytes[offset + 3]) << 24;
-}
-
-/// Splits a binary glTF into its JSON and BIN chunks; unknown chunks are skipped.
-Result<Container> splitGlb(const Bytes& bytes)
-{
-    if (bytes.size() < 20)
-        return Error{ExitCode::kInvalid, "the binary glTF ends inside its header; export or copy it again"};
-    const uint32_t version = readU32(bytes, 4);
-    const uint64_t total = readU32(bytes, 8);
-    if (version != 2)
-        return Error{ExitCode::kUnsupported, fmt::format("binary glTF version {} is not supported, only 2", version)};
-    if (total > bytes.size())
-        return Error{ExitCode::kInvalid,
-                     fmt::format("the file is cut short: its header says {} bytes, it has {}", total, bytes.size())};
-    Container container;
-    uint64_t offset = 12;
-    for (int chunk = 0; offset + 8 <= total; ++chunk)
-    {
-        const uint64_t length = readU32(bytes, offset);
-        const uint32_t type = readU32(bytes, offset + 4);
-        if (offset + 8 + length > total)
-            return Error{ExitCode::kInvalid, fmt::format("chunk {} of the binary glTF reaches past its end", chunk)};
-        const unsigned char* data = bytes.data() + offset + 8;
-        if (chunk == 0 && type != 0x4E4F534A)
-            return Error{ExitCode::kInvalid, "the first chunk of the binary glTF is not JSON"};
-        if (chunk == 0)
-            container.json = {reinterpret_cast<const char*>(data), size_t(length)};
-        else if (type == 0x004E4942 && !container.bin)
-            container.bin = ByteView{data, size_t(length), 0};
-        offset += 8 + ((length + 3) & ~uint64_t(3));
-    }
-    return container;
-}
-
-/// Nesting depth of brackets outside strings, so that no recursive walk of a hostile file runs out of stack.
-int jsonDepth(std::string_view text)
-{
-    int depth = 0;
-    int deepest = 0;
-    bool in_string = false;
-    for (size_t i = 0; i < text.size(); ++i)
-    {
-        const char c = text[i];
-        if (in_string && c == '\\')
-            ++i;
-        else if (c == '"')
-            in_string = !in_string;
-        else if (!in_string && (c == '{' || c == '['))
-            deepest = std::max(deepest, ++depth);
-        else if (!in_string && (c == '}' || c == ']'))
-            --depth;
-    }
-    return deepest;
-}
-
-Result<json> parseJson(std::string_view text)
-{
-    if (jsonDepth(text) > kMaxJsonDepth)
-        return Error{ExitCode::kInvalid, fmt::format("its JSON is nested deeper than {} levels", kMaxJsonDepth)};
-    if (text.starts_with("\xEF\xBB\xBF"))
-        text.remove_prefix(3);
-    try
-    {
-        json document = json::parse(text);
-        if (!document.is_object())
-            return Error{ExitCode::kInvalid, "its JSON is not an object, so it is no glTF file"};
-        return document;
-    }
-    catch (const json::exception& e)
-    {
-        std::string reason = e.what(); // "[json.exception.parse_error.101] parse error at line 1, ...: ..."
-        if (const size_t end = reason.find("] "); end != std::string::npos)
-            reason.erase(0, end + 2);
-        std::replace(reason.begin(), reason.end(), '\n', ' ');
-        return Error{ExitCode::kInvalid, fmt::format("its JSON cannot be read: {}", reason)};
-    }
-}
-
-Status checkVersion(const json& document)
-{
-    const auto asset = document.find("asset");
-    if (asset == document.end() || !asset->is_object() || !asset->contains("version") ||
-        !(*asset)["version"].is_string())
-        return Error{ExitCode::kInvalid, "it does not say which glTF version it is (/asset/version)"};
-    const std::string version = (*asset)["version"];
-    if (!version.starts_with("2."))
-        return Error{ExitCode::kUnsupported,
-                     fmt::format("glTF version {} is not supported, only 2.0 (/asset/version)", version.substr(0, 16))};
-    if (const auto minimum = asset->find("minVersion");
-        minimum != asset->end() && minimum->is_string() && *minimum != "2.0")
-        return Error{ExitCode::kUnsupported, fmt::format("it asks for a reader of glTF {} at least, this one knows 2.0 "
-                                                         "(/asset/minVersion)",
-                                                         minimum->get<std::string>().substr(0, 16))};
-    return Success{};
-}
-
-/// Every top-level list must be an array of objects.
-Status checkShape(const json& document)
-{
-    for (const char* name : {"accessors", "bufferViews", "buffers", "cameras", "images", "materials", "meshes", "nodes",
-                             "samplers", "scenes", "textures"})
-    {
-        const auto list = document.find(name);
-        if (list == document.end())
-            continue;
-        if (!list->is_array())
-            return Error{ExitCode::kInvalid, fmt::format("an array is expected (/{})", name)};
-        for (size_t i = 0; i < list->size(); ++i)
-            if (!(*list)[i].is_object())
-                return Error{ExitCode::kInvalid, fmt::format("an object is expected (/{}/{})", name, i)};
-    }
-    return Success{};
-}
-
-bool isMeshoptFallback(const json& buffer)
-{
-    const auto extensions = buffer.find("extensions");
-    return extensions != buffer.end() && extensions->is_object() &&
-           (extensions->contains("EXT_meshopt_compression") || extensions->contains("KHR_meshopt_compression"));
-}
-
-/// Reads buffer `i`, exactly byteLength bytes of it.
-Result<Bytes> readBuffer(const json& buffer, size_t i, const std::optional<ByteView>& bin,
-                         const std::filesystem::path& folder)
-{
-    const auto length = buffer.find("byteLength");
-    if (length == buffer.end() || !length->is_number_unsigned() || *length == 0u)
-        return Error{ExitCode::kInvalid, fmt::format("a buffer has no valid byteLength (/buffers/{})", i)};
-    const size_t bytes = length->get<size_t>();
-    const auto too_short = [&](size_t have)
-    {
-        return Error{ExitCode::kInvalid,
-                     fmt::format("a buffer should have {} bytes, but only {} are there (/buffers/{})", bytes, have, i)};
-    };
-    const auto uri = buffer.find("uri");
-    if (uri == buffer.end())
-    {
-        if (i == 0 && bin)
-            return bin->bytes < bytes ? Result<Bytes>(too_short(bin->bytes)) : Bytes(bin->data, bin->data + bytes);
-        if (isMeshoptFallback(buffer))
-            return Error{ExitCode::kUnsupported,
-                         fmt::format("its geometry is there in meshopt-compressed form only, which is not supported; "
-                                     "export it without meshopt compression (/buffers/{})",
-                                     i)};
-        return Error{ExitCode::kInvalid, fmt::format("a buffer has no data: it names no file (/buffers/{})", i)};
-    }
-    if (!uri->is_string())
-        return Error{ExitCode::kInvalid, fmt::format("a string is expected (/buffers/{}/uri)", i)};
-    Result<Bytes> data = readUri(uri->get<std::string>(), folder);
-    if (!data)
-        return Error{data.error().code, fmt::format("{} (/buffers/{})", data.error().message, i)};
-    if (data->size() < bytes)
-        return too_short(data->size());
-    data->resize(bytes);
-    return data;
-}
-
 Result<std::vector<GltfImage>> takeImages(json& document)
 {
     std::vector<GltfImage> images;
@@ -199,7 +28,7 @@ Result<std::vector<GltfImage>> takeImages(json& document)
         GltfImage image{text("name"), text("uri"), -1};
         if (const auto view = from.find("bufferView"); view != from.end() && view->is_number_integer())
             image.buffer_view = view->get<int>();
-        if (!image.uri.empty() && !image.uri.starts_with("data:"))
+        if (!image.uri.empty() && !isDataUri(image.uri))
             image.name = image.uri;
         if (image.name.empty())
             image.name = fmt::format("image {}", i);
@@ -209,36 +38,58 @@ Result<std::vector<GltfImage>> takeImages(json& document)
     return images;
 }
 
-/// tinygltf refuses index accessors without a buffer view, which is how Draco files have them: lend them Draco's.
-void lendDracoViews(json& document)
+/// tinygltf takes a skin without inverse bind matrices for damaged.
+std::vector<GltfSkin> takeSkins(json& document)
 {
-    const auto member = [](json& object, const char* key) -> json*
+    std::vector<GltfSkin> skins;
+    const auto list = document.find("skins");
+    if (list == document.end())
+        return skins;
+    const auto integer = [](const json& value) { return value.is_number_integer() ? value.get<int>() : -1; };
+    for (const json& from : *list)
     {
-        const auto it = object.is_object() ? object.find(key) : object.end();
-        return it == object.end() ? nullptr : &*it;
-    };
-    json* accessors = member(document, "accessors");
-    json* meshes = member(document, "meshes");
-    if (accessors == nullptr || meshes == nullptr)
-        return;
-    for (json& mesh : *meshes)
+        GltfSkin& skin = skins.emplace_back();
+        if (const auto name = from.find("name"); name != from.end() && name->is_string())
+            skin.name = name->get<std::string>();
+        if (const auto joints = from.find("joints"); joints != from.end() && joints->is_array())
+            for (const json& joint : *joints)
+                skin.joints.push_back(integer(joint));
+        if (const auto matrices = from.find("inverseBindMatrices"); matrices != from.end())
+            skin.inverse_bind_matrices = integer(*matrices);
+    }
+    document.erase("skins");
+    return skins;
+}
+
+/// tinygltf refuses index accessors without a buffer view, which Draco files and sparse ones over zeros have: lends
+/// them the first one. @return the accessors that got it
+std::vector<size_t> lendIndexViews(json& document)
+{
+    std::vector<size_t> lent;
+    const auto accessors = document.find("accessors");
+    const auto views = document.find("bufferViews");
+    const auto meshes = document.find("meshes");
+    if (accessors == document.end() || views == document.end() || views->empty() || meshes == document.end())
+        return lent;
+    for (const json& mesh : *meshes)
     {
-        json* primitives = member(mesh, "primitives");
-        if (primitives == nullptr || !primitives->is_array())
+        const auto primitives = mesh.find("primitives");
+        if (primitives == mesh.end() || !primitives->is_array())
             continue;
-        for (json& primitive : *primitives)
+        for (const json& primitive : *primitives)
         {
-            json* indices = member(primitive, "indices");
-            json* extensions = member(primitive, "extensions");
-            json* draco = extensions == nullptr ? nullptr : member(*extensions, "KHR_draco_mesh_compression");
-            json* view = draco == nullptr ? nullptr : member(*draco, "bufferView");
-            if (view == nullptr || indices == nullptr || !indices->is_number_unsigned())
+            const auto indices = primitive.is_object() ? primitive.find("indices") : primitive.end();
+            if (indices == primitive.end() || !indices->is_number_unsigned() ||
+                indices->get<size_t>() >= accessors->size())
                 continue;
-            const size_t accessor = indices->get<size_t>();
-            if (accessor < accessors->size() && !(*accessors)[accessor].contains("bufferView"))
-                (*accessors)[accessor]["bufferView"] = *view;
+            json& accessor = (*accessors)[indices->get<size_t>()];
+            if (accessor.contains("bufferView"))
+                continue;
+            accessor["bufferView"] = 0;
+            lent.push_back(indices->get<size_t>());
         }
     }
+    return lent;
 }
 
 /// Lets tinygltf take buffers that are read already: their URI is their number.
@@ -256,25 +107,7 @@ struct LoadedBuffers
     }
 };
 
-Result<LoadedBuffers> takeBuffers(json& document, const std::optional<ByteView>& bin,
-                                  const std::filesystem::path& folder)
-{
-    LoadedBuffers loaded;
-    if (!document.contains("buffers"))
-        return loaded;
-    json& list = document["buffers"];
-    for (size_t i = 0; i < list.size(); ++i)
-    {
-        Result<Bytes> bytes = readBuffer(list[i], i, bin, folder);
-        if (!bytes)
-            return bytes.error();
-        loaded.buffers.push_back(std::move(*bytes));
-        list[i]["uri"] = std::to_string(i);
-    }
-    return loaded;
-}
-
-Status parseModel(const json& document, LoadedBuffers& buffers, tinygltf::Model& model)
+Status parseModel(const json& document, LoadedBuffers buffers, tinygltf::Model& model)
 {
     std::string error;
     std::string warning;
@@ -304,64 +137,52 @@ Status parseModel(const json& document, LoadedBuffers& buffers, tinygltf::Model&
 }
 } // namespace
 
-Result<Bytes> readFile(const std::filesystem::path& path)
-{
-    std::error_code status;
-    const bool regular = std::filesystem::is_regular_file(path, status);
-    if (status)
-        return Error{ExitCode::kIo, fmt::format("\"{}\" cannot be read: {}", path.string(), status.message())};
-    if (!regular)
-        return Error{ExitCode::kIo, fmt::format("\"{}\" is not a regular file", path.string())};
-    std::ifstream stream(path, std::ios::binary | std::ios::ate);
-    if (!stream)
-        return Error{ExitCode::kIo, fmt::format("\"{}\" cannot be opened: {}", path.string(), std::strerror(errno))};
-    Bytes bytes(size_t(stream.tellg()));
-    stream.seekg(0);
-    if (!stream.read(reinterpret_cast<char*>(bytes.data()), std::streamsize(bytes.size())))
-        return Error{ExitCode::kIo, fmt::format("\"{}\" cannot be read to its end", path.string())};
-    return bytes;
-}
-
 Result<GltfFile> readGltf(const std::filesystem::path& path)
 {
-    const Result<Bytes> bytes = readFile(path);
+    GltfFile file;
+    file.files = std::make_shared<InputFiles>(path.parent_path());
+    const Result<Bytes> bytes = file.files->read(path.filename().string());
     if (!bytes)
         return bytes.error();
-    const std::string_view text(reinterpret_cast<const char*>(bytes->data()), bytes->size());
-    Result<Container> container = Container{text, std::nullopt};
-    if (text.starts_with("glTF"))
-        container = splitGlb(*bytes);
-    if (!container)
-        return container.error();
-    if (text.empty())
-        return Error{ExitCode::kInvalid, "the file is empty"};
-
-    Result<json> document = parseJson(container->json);
-    if (!document)
-        return document.error();
-    if (const Status status = checkVersion(*document); !status)
+    Result<GltfDocument> parsed = parseDocument(*bytes);
+    if (!parsed)
+        return parsed.error();
+    json& document = parsed->json;
+    repairGltf(document, file.warnings);
+    if (const Status status = checkExtensions(document, file.warnings); !status)
         return status.error();
-    if (const Status status = checkShape(*document); !status)
-        return status.error();
+    if (document.contains("animations"))
+        file.warnings.push_back({WarningKind::kLeftOut, "",
+                                 "animations are not played: the scene is compiled in the pose that it shows at rest", ""});
+    document.erase("animations");
+    file.skins = takeSkins(document);
 
-    GltfFile file;
-    file.folder = path.parent_path();
-    if (const Status status = checkExtensions(*document, file.warnings); !status)
-        return status.error();
-    if (document->contains("animations") || document->contains("skins"))
-        file.warnings.push_back("animations and skins are not played: the scene is compiled in its rest pose");
-    document->erase("animations");
-    document->erase("skins");
-
-    Result<LoadedBuffers> buffers = takeBuffers(*document, container->bin, file.folder);
+    Result<std::vector<Bytes>> buffers = loadBuffers(*parsed, *file.files, file.warnings);
     if (!buffers)
         return buffers.error();
-    Result<std::vector<GltfImage>> images = takeImages(*document);
+    Result<std::vector<GltfImage>> images = takeImages(document);
     if (!images)
         return images.error();
     file.images = std::move(*images);
-    lendDracoViews(*document);
-    if (const Status status = parseModel(*document, *buffers, file.model); !status)
+    const std::vector<size_t> lent = lendIndexViews(document);
+    if (const Status status = parseModel(document, LoadedBuffers{std::move(*buffers)}, file.model); !status)
         return status.error();
+    for (const size_t accessor : lent)
+        file.model.accessors[accessor].bufferView = -1;
     return file;
+}
+
+Result<ByteView> viewBytes(const tinygltf::Model& model, int buffer_view)
+{
+    if (buffer_view < 0 || size_t(buffer_view) >= model.bufferViews.size())
+        return Error{ExitCode::kInvalid, fmt::format("buffer view {} does not exist", buffer_view)};
+    const tinygltf::BufferView& view = model.bufferViews[size_t(buffer_view)];
+    if (view.buffer < 0 || size_t(view.buffer) >= model.buffers.size())
+        return Error{ExitCode::kInvalid,
+                     fmt::format("buffer {} does not exist (/bufferViews/{}/buffer)", view.buffer, buffer_view)};
+    const auto& data = model.buffers[size_t(view.buffer)].data;
+    if (view.byteOffset > data.size() || view.byteLength > data.size() - view.byteOffset)
+        return Error{ExitCode::kInvalid,
+                     fmt::format("a buffer view reaches past the end of its buffer (/bufferViews/{})", buffer_view)};
+    return ByteView{data.data() + view.byteOffset, view.byteLength, view.byteStride};
 }

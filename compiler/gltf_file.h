@@ -1,9 +1,13 @@
 // Opens .gltf and .glb files: reads every byte the scene refers to and hands back tinygltf's model of it.
 #pragma once
+#include "compiler/gltf_document.h"
+#include "compiler/gltf_uri.h"
+#include "compiler/warnings.h"
 #include "format/result.h"
 
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,29 +25,26 @@ struct GltfImage
     int buffer_view = -1; // unchecked
 };
 
+struct GltfSkin
+{
+    std::string name;
+    std::vector<int> joints;                  // nodes, unchecked
+    std::optional<int> inverse_bind_matrices; // accessor, unchecked; none: identities
+};
+
 struct GltfFile
 {
-    std::filesystem::path folder;      // relative URIs start here
-    tinygltf::Model model;             // buffers loaded; indices between its parts are unchecked; no images
+    std::shared_ptr<InputFiles> files; // relative URIs start in its folder; knows all that were read
+    tinygltf::Model model;             // buffers loaded; indices between its parts as after repairGltf(); no images
+                                       // and skins
     std::vector<GltfImage> images;     // as in the file
-    std::vector<std::string> warnings; // full sentences
+    std::vector<GltfSkin> skins;       // as in the file
+    Warnings warnings;
 };
 
-/// @return kIo where the file cannot be read, kInvalid where it is not glTF 2 or one of its buffers is missing,
-///         kUnsupported for another glTF version, an unknown required extension or one that cannot be decoded
+/// Damaged items are replaced and reported (gltf_repair.h); a buffer that cannot be read is too, and is one byte long then.
+/// @return kIo where the file cannot be read, kInvalid where it is not glTF 2, kUnsupported for another glTF version, an unknown required extension or one that cannot be decoded
 Result<GltfFile> readGltf(const std::filesystem::path& path);
 
-/// The bytes behind a `uri` of the file: base64 data or a file in `folder`.
-Result<std::vector<unsigned char>> readUri(const std::string& uri, const std::filesystem::path& folder);
-
-/// A whole regular file, or kIo with the system's reason.
-Result<std::vector<unsigned char>> readFile(const std::filesystem::path& path);
-
 /// The bytes of a buffer view, or kInvalid where it is out of range. Borrowed from the model.
-struct ByteView
-{
-    const unsigned char* data = nullptr;
-    size_t bytes = 0;
-    size_t stride = 0; // 0: tightly packed
-};
 Result<ByteView> viewBytes(const tinygltf::Model& model, int buffer_view);

@@ -1,11 +1,16 @@
 #include "compiler/gltf_material.h"
 
 #include "compiler/linear.h"
+#include "format/material.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <initializer_list>
+#include <map>
+#include <set>
+#include <utility>
 
 namespace
 {
@@ -50,6 +55,15 @@ float unitRange(double v)
     return std::isfinite(v) ? float(std::clamp(v, 0.0, 1.0)) : 1.0f;
 }
 
+gpu::vec3 unitRange(gpu::vec3 c)
+{
+    return {unitRange(c.x), unitRange(c.y), unitRange(c.z)};
+}
+bool isBlack(gpu::vec3 c)
+{
+    return c.x == 0 && c.y == 0 && c.z == 0;
+}
+
 uint32_t wrapMode(int gltf_wrap)
 {
     return gltf_wrap == TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE     ? gpu::kWrapClamp
@@ -57,7 +71,7 @@ uint32_t wrapMode(int gltf_wrap)
                                                                 : gpu::kWrapRepeat;
 }
 
-/// Reads texture references; remembers the first thing that was wrong.
+/// Reads texture references, which repairGltf() has seen: they name textures and images that exist.
 class TextureReader
 {
 public:
@@ -98,7 +112,6 @@ public:
                    srgb);
     }
 
-    Status status() const { return error_.message.empty() ? Status(Success{}) : Status(error_); }
     bool unsupportedTexCoord() const { return unsupported_tex_coord_; }
 
 private:
@@ -107,31 +120,18 @@ private:
         if (texture == -1)
             return -1;
         const auto& textures = file_.model.textures;
-        if (texture < 0 || size_t(texture) >= textures.size())
-            return fail(ExitCode::kInvalid, fmt::format("a material names texture {}, which does not exist", texture));
         int source = textures[size_t(texture)].source;
         const auto webp = textures[size_t(texture)].extensions.find("EXT_texture_webp");
         if (webp != textures[size_t(texture)].extensions.end() && webp->second.Get("source").IsInt())
             source = webp->second.Get("source").GetNumberAsInt();
-        if (source < 0 && textures[size_t(texture)].extensions.contains("KHR_texture_basisu"))
-            return fail(
-                ExitCode::kUnsupported,
-                fmt::format("a texture is there as KTX2 (Basis Universal) only, which is not supported; export it as "
-                            "PNG, JPEG or WebP (/textures/{})",
-                            texture));
-        if (source == -1) // allowed: an extension that is not honoured may hold it
-            return -1;
-        if (source < 0 || size_t(source) >= file_.images.size())
-            return fail(ExitCode::kInvalid,
-                        fmt::format("image {} does not exist (/textures/{}/source)", source, texture));
+        const auto ktx2 = textures[size_t(texture)].extensions.find("KHR_texture_basisu");
+        if (source < 0 && ktx2 != textures[size_t(texture)].extensions.end() && ktx2->second.Get("source").IsInt())
+            source = ktx2->second.Get("source").GetNumberAsInt();
+        if (source == -1 && reported_.insert(texture).second) // allowed: an extension that is not honoured may hold it
+            scene_.warnings.push_back({WarningKind::kLeftOut, fmt::format("/textures/{}", texture),
+                                       "a texture names no image of a kind that can be read (PNG, JPEG, WebP, KTX2)",
+                                       "its materials go without it"});
         return source;
-    }
-
-    int fail(ExitCode code, std::string message)
-    {
-        if (error_.message.empty())
-            error_ = {code, std::move(message)};
-        return -1;
     }
 
     uint32_t request(ImageRequest wanted)
@@ -181,28 +181,9 @@ private:
     const GltfFile& file_;
     SceneData& scene_;
     std::vector<ImageRequest>& requests_;
-    Error error_;
+    std::set<int> reported_; // textures without an image
     bool unsupported_tex_coord_ = false;
 };
-
-gpu::Material defaultMaterial()
-{
-    gpu::Material m{};
-    m.base_color = {1, 1, 1};
-    m.alpha = 1;
-    m.alpha_cutoff = 0.5f;
-    m.metallic = 1;
-    m.roughness = 1;
-    m.normal_scale = 1;
-    m.ior = 1.5f;
-    m.specular = 1;
-    m.specular_color = {1, 1, 1};
-    for (uint32_t* texture :
-         {&m.base_color_texture, &m.metallic_roughness_texture, &m.normal_texture, &m.emissive_texture,
-          &m.transmission_texture, &m.specular_texture, &m.specular_color_texture})
-        *texture = gpu::kNone;
-    return m;
-}
 
 void readCore(const tinygltf::Material& from, TextureReader& textures, gpu::Material& m)
 {
@@ -235,6 +216,8 @@ void readEmission(const tinygltf::Material& from, const Value* strength, Texture
     if (m.emission.x > 0 || m.emission.y > 0 || m.emission.z > 0)
         m.emissive_texture = textures.use(from.emissiveTexture.index, from.emissiveTexture.texCoord,
                                           from.emissiveTexture.extensions, true);
+    if (from.emissiveTexture.index != -1 && m.emissive_texture == gpu::kNone)
+        m.emission = {}; // without its map, which says what glows, all of the surface would
 }
 
 void readTransmission(const Value& transmission, const Value* volume, TextureReader& textures, gpu::Material& m)
@@ -263,6 +246,60 @@ void readSpecular(const Value& specular, TextureReader& textures, gpu::Material&
     m.specular_color_texture = textures.use(specular.Get("specularColorTexture"), true);
 }
 
+void readClearcoat(const Value& clearcoat, TextureReader& textures, gpu::Material& m)
+{
+    m.clearcoat = unitRange(number(clearcoat, "clearcoatFactor", 0));
+    if (m.clearcoat == 0)
+        return;
+    m.clearcoat_roughness = unitRange(number(clearcoat, "clearcoatRoughnessFactor", 0));
+    m.clearcoat_texture = textures.use(clearcoat.Get("clearcoatTexture"), false);
+    m.clearcoat_roughness_texture = textures.use(clearcoat.Get("clearcoatRoughnessTexture"), false);
+    m.clearcoat_normal_texture = textures.use(clearcoat.Get("clearcoatNormalTexture"), false);
+    m.clearcoat_normal_scale = float(number(clearcoat.Get("clearcoatNormalTexture"), "scale", 1));
+}
+
+void readSheen(const Value& sheen, TextureReader& textures, gpu::Material& m)
+{
+    m.sheen_color = unitRange(color(sheen, "sheenColorFactor", {0, 0, 0}));
+    if (isBlack(m.sheen_color))
+        return;
+    m.sheen_roughness = unitRange(number(sheen, "sheenRoughnessFactor", 0));
+    m.sheen_color_texture = textures.use(sheen.Get("sheenColorTexture"), true);
+    m.sheen_roughness_texture = textures.use(sheen.Get("sheenRoughnessTexture"), false);
+}
+
+void readAnisotropy(const Value& anisotropy, TextureReader& textures, gpu::Material& m)
+{
+    m.anisotropy = unitRange(number(anisotropy, "anisotropyStrength", 0));
+    if (m.anisotropy == 0)
+        return;
+    m.anisotropy_rotation = float(number(anisotropy, "anisotropyRotation", 0));
+    m.anisotropy_texture = textures.use(anisotropy.Get("anisotropyTexture"), false);
+}
+
+void readIridescence(const Value& iridescence, TextureReader& textures, gpu::Material& m)
+{
+    m.iridescence = unitRange(number(iridescence, "iridescenceFactor", 0));
+    if (m.iridescence == 0)
+        return;
+    const auto thickness = [&](const char* key, double fallback) { return float(std::max(number(iridescence, key, fallback), 0.0)); };
+    m.iridescence_ior = float(std::max(number(iridescence, "iridescenceIor", 1.3), 1.0));
+    m.iridescence_thickness_minimum = thickness("iridescenceThicknessMinimum", 100);
+    m.iridescence_thickness_maximum = thickness("iridescenceThicknessMaximum", 400);
+    m.iridescence_texture = textures.use(iridescence.Get("iridescenceTexture"), false);
+    m.iridescence_thickness_texture = textures.use(iridescence.Get("iridescenceThicknessTexture"), false);
+}
+
+void readDiffuseTransmission(const Value& diffuse, TextureReader& textures, gpu::Material& m)
+{
+    m.diffuse_transmission = unitRange(number(diffuse, "diffuseTransmissionFactor", 0));
+    if (m.diffuse_transmission == 0)
+        return;
+    m.diffuse_transmission_color = unitRange(color(diffuse, "diffuseTransmissionColorFactor", {1, 1, 1}));
+    m.diffuse_transmission_texture = textures.use(diffuse.Get("diffuseTransmissionTexture"), false);
+    m.diffuse_transmission_color_texture = textures.use(diffuse.Get("diffuseTransmissionColorTexture"), true);
+}
+
 /// A dielectric whose F0 is the specular colour: with ior 1.5, F0 = 0.04 x specular_color. Exact for factors.
 void readSpecularGlossiness(const Value& sg, TextureReader& textures, gpu::Material& m)
 {
@@ -285,7 +322,7 @@ gpu::Material readMaterial(const tinygltf::Material& from, TextureReader& textur
         const auto it = from.extensions.find(name);
         return it == from.extensions.end() || !it->second.IsObject() ? nullptr : &it->second;
     };
-    gpu::Material m = defaultMaterial();
+    gpu::Material m = package::defaultMaterial();
     const Value* specular_glossiness = extension("KHR_materials_pbrSpecularGlossiness");
     readCore(from, textures, m);
     readEmission(from, extension("KHR_materials_emissive_strength"), textures, m);
@@ -298,12 +335,46 @@ gpu::Material readMaterial(const tinygltf::Material& from, TextureReader& textur
         readSpecular(*specular, textures, m);
     if (const Value* transmission = extension("KHR_materials_transmission"))
         readTransmission(*transmission, extension("KHR_materials_volume"), textures, m);
+    if (const Value* clearcoat = extension("KHR_materials_clearcoat"))
+        readClearcoat(*clearcoat, textures, m);
+    if (const Value* sheen = extension("KHR_materials_sheen"))
+        readSheen(*sheen, textures, m);
+    if (const Value* anisotropy = extension("KHR_materials_anisotropy"))
+        readAnisotropy(*anisotropy, textures, m);
+    if (const Value* iridescence = extension("KHR_materials_iridescence"))
+        readIridescence(*iridescence, textures, m);
+    if (const Value* dispersion = extension("KHR_materials_dispersion"))
+        m.dispersion = float(std::max(number(*dispersion, "dispersion", 0), 0.0));
+    if (const Value* diffuse = extension("KHR_materials_diffuse_transmission"))
+        readDiffuseTransmission(*diffuse, textures, m);
     if (specular_glossiness != nullptr)
         readSpecularGlossiness(*specular_glossiness, textures, m);
     if (extension("KHR_materials_unlit") != nullptr)
         m.flags |= gpu::kMaterialUnlit;
     return m;
 }
+
+/// What a material has in place of a texture that cannot be read.
+constexpr std::pair<uint32_t gpu::Material::*, std::string_view> kStandIns[] = {
+    {&gpu::Material::base_color_texture, "the base colour factor alone"},
+    {&gpu::Material::metallic_roughness_texture, "the metallic and roughness factors alone"},
+    {&gpu::Material::normal_texture, "the surface's own normals"},
+    {&gpu::Material::emissive_texture, "no emission"},
+    {&gpu::Material::transmission_texture, "the transmission factor alone"},
+    {&gpu::Material::specular_texture, "the specular factor alone"},
+    {&gpu::Material::specular_color_texture, "the specular colour factor alone"},
+    {&gpu::Material::clearcoat_texture, "the clear coat factor alone"},
+    {&gpu::Material::clearcoat_roughness_texture, "the clear coat's roughness factor alone"},
+    {&gpu::Material::clearcoat_normal_texture, "the surface's own normals for the clear coat"},
+    {&gpu::Material::sheen_color_texture, "the sheen colour factor alone"},
+    {&gpu::Material::sheen_roughness_texture, "the sheen roughness factor alone"},
+    {&gpu::Material::anisotropy_texture, "the anisotropy factors alone"},
+    {&gpu::Material::iridescence_texture, "the iridescence factor alone"},
+    {&gpu::Material::iridescence_thickness_texture, "the largest iridescence thickness"},
+    {&gpu::Material::diffuse_transmission_texture, "the diffuse transmission factor alone"},
+    {&gpu::Material::diffuse_transmission_color_texture, "the diffuse transmission colour factor alone"},
+};
+static_assert(std::size(kStandIns) == package::kMaterialTextures.size());
 
 bool hasTransparentTexel(const TextureImage& image)
 {
@@ -314,7 +385,7 @@ bool hasTransparentTexel(const TextureImage& image)
 }
 } // namespace
 
-Status importMaterials(const GltfFile& file, std::span<const int> used, SceneData& scene,
+void importMaterials(const GltfFile& file, std::span<const int> used, SceneData& scene,
                        std::vector<ImageRequest>& requests)
 {
     TextureReader textures(file, scene, requests);
@@ -322,12 +393,8 @@ Status importMaterials(const GltfFile& file, std::span<const int> used, SceneDat
     for (const int index : used)
     {
         const bool is_default = index < 0;
-        if (!is_default && size_t(index) >= file.model.materials.size())
-            return Error{ExitCode::kInvalid, fmt::format("a mesh names material {}, which does not exist", index)};
-        scene.materials.push_back(is_default ? defaultMaterial()
+        scene.materials.push_back(is_default ? package::defaultMaterial()
                                              : readMaterial(file.model.materials[size_t(index)], textures));
-        if (const Status status = textures.status(); !status)
-            return Error{status.error().code, fmt::format("{} (/materials/{})", status.error().message, index)};
         if (is_default)
         {
             scene.material_names.push_back("default");
@@ -339,11 +406,69 @@ Status importMaterials(const GltfFile& file, std::span<const int> used, SceneDat
         lost_glossiness |= sg != from.extensions.end() && sg->second.Has("specularGlossinessTexture");
     }
     if (textures.unsupportedTexCoord())
-        scene.warnings.push_back("some textures use a coordinate set above TEXCOORD_1; they are drawn with TEXCOORD_0");
+        scene.warnings.push_back({WarningKind::kApproximated, "",
+                                  "some textures use a coordinate set above TEXCOORD_1; they are drawn with TEXCOORD_0", ""});
     if (lost_glossiness)
         scene.warnings.push_back(
-            "glossiness textures (KHR_materials_pbrSpecularGlossiness) are left out: only the factor is used");
-    return Success{};
+            {WarningKind::kLeftOut, "",
+             "glossiness textures (KHR_materials_pbrSpecularGlossiness) are left out: only the factor is used", ""});
+}
+
+void takeImages(std::vector<DecodedImage> decoded, SceneData& scene)
+{
+    std::map<int, std::set<std::string_view>> stand_ins; // by image of the file
+    for (gpu::Material& m : scene.materials)
+        for (const auto& [member, stand_in] : kStandIns)
+        {
+            if (m.*member == gpu::kNone)
+                continue;
+            const DecodedImage& image = decoded[scene.texture_uses[m.*member].image];
+            if (!image.error)
+                continue;
+            m.*member = gpu::kNone;
+            stand_ins[image.source].insert(stand_in);
+            if (member == &gpu::Material::emissive_texture)
+                m.emission = {};
+        }
+    std::vector<uint32_t> image_places(decoded.size(), gpu::kNone); // of those that are left
+    for (size_t i = 0; i < decoded.size(); ++i)
+    {
+        DecodedImage& image = decoded[i];
+        if (!image.error)
+        {
+            image_places[i] = uint32_t(scene.images.size());
+            scene.images.push_back(std::move(image.image));
+        }
+        else if (const auto found = stand_ins.find(image.source); found != stand_ins.end())
+        {
+            scene.warnings.push_back({WarningKind::kUnreadable, fmt::format("/images/{}", image.source), image.error->message,
+                                      fmt::format("in its place: {}", fmt::join(found->second, ", ")), image.error->code});
+            stand_ins.erase(found); // an image as colour and as data is one
+        }
+    }
+    std::vector<uint32_t> use_places(scene.texture_uses.size(), gpu::kNone);
+    std::vector<TextureUse> uses;
+    for (size_t i = 0; i < use_places.size(); ++i)
+    {
+        TextureUse use = scene.texture_uses[i];
+        use.image = image_places[use.image];
+        if (use.image == gpu::kNone)
+            continue;
+        use_places[i] = uint32_t(uses.size());
+        uses.push_back(use);
+    }
+    scene.texture_uses = std::move(uses);
+    for (gpu::Material& m : scene.materials)
+        for (const package::MaterialTexture& texture : package::kMaterialTextures)
+            if (m.*texture.index != gpu::kNone)
+                m.*texture.index = use_places[m.*texture.index];
+}
+
+uint32_t tangentTexture(const gpu::Material& material)
+{
+    return material.normal_texture != gpu::kNone       ? material.normal_texture
+           : material.anisotropy_texture != gpu::kNone ? material.anisotropy_texture
+                                                       : material.clearcoat_normal_texture;
 }
 
 std::vector<uint32_t> materialTriangleFlags(const SceneData& scene)

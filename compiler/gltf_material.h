@@ -4,8 +4,16 @@
 
 /// Appends to `scene` the materials of the file that `used` names, in that order (-1: glTF's default material), their
 /// texture uses, and to `requests` the images these need (TextureUse::image indexes `requests`).
-Status importMaterials(const GltfFile& file, std::span<const int> used, SceneData& scene,
-                       std::vector<ImageRequest>& requests);
+void importMaterials(const GltfFile& file, std::span<const int> used, SceneData& scene,
+                     std::vector<ImageRequest>& requests);
+
+/// Sets the scene's images, [request_count] as decoded. Materials lose textures without one, a warning for each says what
+/// stands in its place: its factor, for normal maps the surface's own normals, for emissive ones no emission.
+void takeImages(std::vector<DecodedImage> decoded, SceneData& scene);
+
+/// The texture along whose coordinates a material's tangents lie, an index into SceneData::texture_uses: gpu::kNone where it
+/// has none (an anisotropic material without textures then takes TEXCOORD_0).
+uint32_t tangentTexture(const gpu::Material& material);
 
 /// gpu::kTriangle* bits of each material: alpha only where coverage can be below 1. Needs decoded images.
 std::vector<uint32_t> materialTriangleFlags(const SceneData& scene);

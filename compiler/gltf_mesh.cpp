@@ -1,7 +1,7 @@
 #include "compiler/gltf_mesh.h"
 
-#include "compiler/gltf_accessor.h"
-#include "compiler/gltf_draco.h"
+#include "compiler/gltf_attributes.h"
+#include "compiler/gltf_morph.h"
 #include "compiler/linear.h"
 
 #include <fmt/format.h>
@@ -11,44 +11,6 @@
 
 namespace
 {
-/// Attributes of one primitive, from Draco where it has them, else from accessors.
-class AttributeSource
-{
-public:
-    AttributeSource(const tinygltf::Model& model, const tinygltf::Primitive& primitive, const DracoMesh* draco)
-        : model_(model), primitive_(primitive), draco_(draco)
-    {
-    }
-
-    Result<FloatArray> read(const char* name, uint32_t min_components, uint32_t max_components,
-                            size_t vertex_count) const
-    {
-        const auto attribute = primitive_.attributes.find(name);
-        if (attribute == primitive_.attributes.end())
-            return FloatArray{};
-        Result<FloatArray> array = FloatArray{};
-        if (draco_ != nullptr && draco_->attributes.contains(name))
-            array = draco_->attributes.at(name);
-        else
-            array = readFloats(model_, attribute->second, min_components, max_components);
-        if (!array)
-            return Error{array.error().code, fmt::format("{}: {}", name, array.error().message)};
-        if (array->components < min_components || array->components > max_components)
-            return Error{ExitCode::kInvalid, fmt::format("{} has {} components", name, array->components)};
-        if (vertex_count != kAnyCount && array->count != vertex_count)
-            return Error{ExitCode::kInvalid,
-                         fmt::format("{} has {} elements for {} vertices", name, array->count, vertex_count)};
-        return array;
-    }
-
-    static constexpr size_t kAnyCount = ~size_t(0);
-
-private:
-    const tinygltf::Model& model_;
-    const tinygltf::Primitive& primitive_;
-    const DracoMesh* draco_;
-};
-
 template <typename Vector>
 std::vector<Vector> toVectors(const FloatArray& array, float last)
 {
@@ -81,6 +43,26 @@ std::vector<gpu::uvec3> assemble(const std::vector<uint32_t>& v, int mode)
     return triangles;
 }
 
+/// Removes triangles with a corner that does not exist or has no place. @return the error that this is
+std::optional<Error> dropBadTriangles(MeshPrimitive& mesh)
+{
+    const size_t count = mesh.positions.size();
+    const auto exists = [count](gpu::uvec3 t) { return std::max({t.x, t.y, t.z}) < count; };
+    const auto placed = [&](gpu::uvec3 t)
+    { return isFinite(mesh.positions[t.x]) && isFinite(mesh.positions[t.y]) && isFinite(mesh.positions[t.z]); };
+    const size_t total = mesh.triangles.size();
+    const size_t missing = std::erase_if(mesh.triangles, [&](gpu::uvec3 t) { return !exists(t); });
+    const size_t unplaced = std::erase_if(mesh.triangles, [&](gpu::uvec3 t) { return !placed(t); });
+    if (const auto good = std::find_if(mesh.positions.begin(), mesh.positions.end(), [](gpu::vec3 p) { return isFinite(p); });
+        good != mesh.positions.end())
+        std::replace_if(mesh.positions.begin(), mesh.positions.end(), [](gpu::vec3 p) { return !isFinite(p); }, gpu::vec3(*good));
+    if (missing + unplaced == 0)
+        return std::nullopt;
+    return Error{ExitCode::kInvalid,
+                 missing > 0 ? fmt::format("{} of {} triangles name vertices beyond the {} that there are", missing, total, count)
+                             : fmt::format("{} of {} triangles have vertices that are not finite", unplaced, total)};
+}
+
 Result<std::vector<uint32_t>> vertexIndices(const tinygltf::Model& model, const tinygltf::Primitive& primitive,
                                             size_t vertex_count)
 {
@@ -90,25 +72,40 @@ Result<std::vector<uint32_t>> vertexIndices(const tinygltf::Model& model, const 
         std::iota(indices.begin(), indices.end(), 0u);
         return indices;
     }
-    Result<std::vector<uint32_t>> indices = readIndices(model, primitive.indices);
-    if (!indices)
-        return indices.error();
-    if (const auto largest = std::max_element(indices->begin(), indices->end());
-        largest != indices->end() && *largest >= vertex_count)
-        return Error{ExitCode::kInvalid,
-                     fmt::format("vertex index {} is out of range: there are {} vertices (/accessors/{})", *largest,
-                                 vertex_count, primitive.indices)};
-    return indices;
+    return readIndices(model, primitive.indices);
+}
+
+/// Morphs the mesh and reads its influences; what is damaged of these is left out.
+void applyShape(const tinygltf::Model& model, const tinygltf::Primitive& primitive, const PrimitiveShape& shape,
+                const AttributeSource& source, const std::string& pointer, Warnings& warnings, GltfPrimitive& result)
+{
+    if (!shape.morph_weights.empty())
+    {
+        MeshPrimitive morphed = result.mesh;
+        if (const Status status = applyMorphTargets(model, primitive, shape.morph_weights, morphed); status)
+            result.mesh = std::move(morphed);
+        else
+            warnings.push_back(warningOf(WarningKind::kBadGeometry, status.error(), pointer, "it is drawn without morphing"));
+    }
+    if (shape.joint_count == 0)
+        return;
+    Result<Influences> influences = readInfluences(source, result.mesh.positions.size(), shape.joint_count);
+    if (influences)
+        result.influences = std::move(*influences);
+    else
+        warnings.push_back(warningOf(WarningKind::kBadGeometry, influences.error(), pointer, "it is drawn where its node is"));
 }
 } // namespace
 
-Result<std::optional<MeshPrimitive>> readPrimitive(const tinygltf::Model& model, const tinygltf::Primitive& primitive)
+Result<std::optional<GltfPrimitive>> readPrimitive(const tinygltf::Model& model, const tinygltf::Primitive& primitive,
+                                                   const PrimitiveShape& shape, const std::string& pointer,
+                                                   Warnings& warnings)
 {
     const int mode = primitive.mode;
     if (mode < TINYGLTF_MODE_POINTS || mode > TINYGLTF_MODE_TRIANGLE_FAN)
         return Error{ExitCode::kInvalid, fmt::format("primitive mode {} does not exist", mode)};
     if (mode < TINYGLTF_MODE_TRIANGLES || !primitive.attributes.contains("POSITION"))
-        return std::optional<MeshPrimitive>();
+        return std::optional<GltfPrimitive>();
     const auto draco = decodeDraco(model, primitive);
     if (!draco)
         return draco.error();
@@ -118,24 +115,26 @@ Result<std::optional<MeshPrimitive>> readPrimitive(const tinygltf::Model& model,
     if (!positions)
         return positions.error();
     const size_t count = positions->count;
-    if (std::any_of(positions->values.begin(), positions->values.end(), [](float v) { return !std::isfinite(v); }))
-        return Error{ExitCode::kInvalid, "POSITION holds a number that is not finite"};
-    MeshPrimitive mesh;
+    GltfPrimitive result;
+    MeshPrimitive& mesh = result.mesh;
     mesh.positions = toVectors<gpu::vec3>(*positions, 0);
 
-    const Result<FloatArray> normals = source.read("NORMAL", 3, 3, count);
-    const Result<FloatArray> tangents = source.read("TANGENT", 4, 4, count);
-    const Result<FloatArray> uv0 = source.read("TEXCOORD_0", 2, 2, count);
-    const Result<FloatArray> uv1 = source.read("TEXCOORD_1", 2, 2, count);
-    const Result<FloatArray> colors = source.read("COLOR_0", 3, 4, count);
-    for (const auto* array : {&normals, &tangents, &uv0, &uv1, &colors})
-        if (!*array)
-            return array->error();
-    mesh.normals = toVectors<gpu::vec3>(*normals, 0);
-    mesh.tangents = normals->count > 0 ? toVectors<gpu::vec4>(*tangents, 1) : std::vector<gpu::vec4>();
-    mesh.uv0 = toVectors<gpu::vec2>(*uv0, 0);
-    mesh.uv1 = toVectors<gpu::vec2>(*uv1, 0);
-    mesh.colors = toVectors<gpu::vec4>(*colors, 1);
+    const auto optional = [&](const char* name, uint32_t min_components, uint32_t max_components)
+    {
+        Result<FloatArray> array = source.read(name, min_components, max_components, count);
+        if (array)
+            return std::move(*array);
+        warnings.push_back({WarningKind::kBadGeometry, pointer + "/attributes/" + name, array.error().message,
+                            "the attribute is left out", array.error().code});
+        return FloatArray{};
+    };
+    const FloatArray normals = optional("NORMAL", 3, 3);
+    mesh.normals = toVectors<gpu::vec3>(normals, 0);
+    if (normals.count > 0)
+        mesh.tangents = toVectors<gpu::vec4>(optional("TANGENT", 4, 4), 1);
+    mesh.uv0 = toVectors<gpu::vec2>(optional("TEXCOORD_0", 2, 2), 0);
+    mesh.uv1 = toVectors<gpu::vec2>(optional("TEXCOORD_1", 2, 2), 0);
+    mesh.colors = toVectors<gpu::vec4>(optional("COLOR_0", 3, 4), 1);
 
     if (*draco && (*draco)->vertex_count != count)
         return Error{ExitCode::kInvalid, "Draco data and POSITION have different numbers of vertices"};
@@ -144,5 +143,8 @@ Result<std::optional<MeshPrimitive>> readPrimitive(const tinygltf::Model& model,
     if (!indices)
         return indices.error();
     mesh.triangles = assemble(*indices, *draco ? TINYGLTF_MODE_TRIANGLES : mode);
-    return std::optional<MeshPrimitive>(std::move(mesh));
+    if (const std::optional<Error> bad = dropBadTriangles(mesh))
+        warnings.push_back({WarningKind::kBadGeometry, pointer, bad->message, "they are left out", bad->code});
+    applyShape(model, primitive, shape, source, pointer, warnings, result);
+    return std::optional<GltfPrimitive>(std::move(result));
 }

@@ -1,9 +1,11 @@
-// Decodes the images of a glTF file: PNG, JPEG and WebP to RGBA8.
+// Decodes the images of a glTF file: PNG, JPEG, WebP and KTX2 to RGBA8, or 16 bits where they have more than 8.
 #pragma once
 #include "compiler/gltf_file.h"
 #include "compiler/scene_data.h"
 
+#include <optional>
 #include <span>
+#include <vector>
 
 /// One image of SceneData: which image of the file, and whether its colours are sRGB-encoded.
 struct ImageRequest
@@ -13,6 +15,12 @@ struct ImageRequest
     auto operator<=>(const ImageRequest&) const = default;
 };
 
-/// Decodes on all cores. @return one image a request, in their order; kInvalid naming the first that does not decode,
-/// kIo for a missing file, kUnsupported for another format
-Result<std::vector<TextureImage>> decodeImages(const GltfFile& file, std::span<const ImageRequest> requests);
+struct DecodedImage
+{
+    int source = 0; // as requested
+    TextureImage image;         // empty where there is an error
+    std::optional<Error> error; // kInvalid: it does not decode, kIo: a missing file, kUnsupported: another format
+};
+
+/// Decodes on all cores. @return one image a request, in their order; kUnsupported where all together are too large
+Result<std::vector<DecodedImage>> decodeImages(const GltfFile& file, std::span<const ImageRequest> requests);

@@ -21,5 +21,13 @@ struct ImportedScene
     std::vector<ImageRequest> images;        // what SceneData::images is to hold
 };
 
-/// Reads geometry, materials, lights and cameras of the file's default scene.
-Result<ImportedScene> importScene(const GltfFile& file);
+/// What to take of a file that holds more than one thing.
+struct ImportChoice
+{
+    std::string scene;   // name or index; empty: the file's default
+    std::string variant; // of KHR_materials_variants; empty: the materials that primitives name themselves
+};
+
+/// Reads geometry, materials, lights and cameras of one scene of the file, in the pose that it shows at rest.
+/// @return kUsage listing what there is where a choice names nothing
+Result<ImportedScene> importScene(const GltfFile& file, const ImportChoice& choice = {});

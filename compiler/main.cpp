@@ -1,49 +1,90 @@
 // lumicut-compile: the command line.
 #include "compiler/camera_views.h"
-#include "compiler/compile.h"
+#include "compiler/compile_many.h"
+#include "compiler/gltf_list.h"
 #include "compiler/linear.h"
-#include "compiler/report.h"
+#include "compiler/parallel.h"
+#include "format/temporary_file.h"
+#include "tools/cli/documentation.h"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <charconv>
-#include <fstream>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <set>
 
 namespace
 {
 struct Arguments
 {
-    std::string input;
+    std::vector<std::string> scenes;
     std::string output;
+    std::string scene;
+    std::string variant;
     std::string environment;
+    std::string environment_rotation;
+    std::string environment_scale;
     std::string sun;
     std::vector<std::string> views;
     std::string report;
     std::string compress = "none";
-    bool no_default_light = false;
+    std::string textures = "bc";
+    std::string dependencies;
+    std::string cache;
+    uint64_t cache_bytes = uint64_t(4) << 30;
+    unsigned threads = thread_limit;
+    bool force = false;
+    std::string default_light = "auto";
+    bool strict = false;
     bool quiet = false;
+    bool list = false;
+    bool json = false;
 };
-
-int fail(const std::string& where, const Error& error)
-{
-    fmt::print(stderr, "{}: error: {}\n", error.file.empty() ? where : error.file, error.message);
-    return int(error.code);
-}
 
 void declare(CLI::App& app, Arguments& a)
 {
-    app.add_option("scene", a.input, "Scene to compile (.gltf or .glb)")->required();
-    app.add_option("-o,--output", a.output, "Package to write (default: the scene's name with .lumi)");
-    app.add_option("--env", a.environment, "Environment: equirectangular .exr or .hdr, W/(m^2 sr)");
+    app.add_option("scene", a.scenes, "Scenes to compile (.gltf or .glb)")->required();
+    app.add_option("-o,--output", a.output,
+                   "Package to write, or the folder for it (default: beside the scene, with .lumi)");
+    app.add_option("--scene", a.scene, "Scene of the file, name or index (default: the file's default)");
+    app.add_option("--variant", a.variant, "Variant of the file's materials (KHR_materials_variants)");
+    auto* env = app.add_option("--env", a.environment, "Environment: equirectangular .exr or .hdr, W/(m^2 sr)");
+    app.add_option("--env-rotate", a.environment_rotation,
+                   "Degrees by which the environment is turned about +Y, counter-clockwise seen from above")
+        ->needs(env);
+    app.add_option("--env-scale", a.environment_scale, "Factor for the environment's radiance")->needs(env);
     app.add_option("--sun", a.sun, "Sun: DX,DY,DZ,LUX; the direction is the way its light travels");
     app.add_option(
            "--view", a.views,
            "Camera: NAME=EX,EY,EZ,TX,TY,TZ,YFOV; eye, target (metres), vertical field of view (degrees). Repeatable")
         ->allow_extra_args(false); // else it takes the scene after it
-    app.add_flag("--no-default-light", a.no_default_light, "Leave a scene without any light dark");
-    app.add_option("--report", a.report, "Write what was made as JSON");
+    app.add_option("--default-light", a.default_light,
+                   "auto, on or off: a sky and a sun besides the scene's own light; auto: where that would leave the "
+                   "picture black")
+        ->check(CLI::IsMember({"auto", "on", "off"}))
+        ->capture_default_str();
+    app.add_flag_callback("--no-default-light",
+                          [] { throw CLI::ValidationError("--no-default-light", "it is --default-light off now"); })
+        ->group(""); // not listed
+    app.add_flag("--strict", a.strict, "Treat damaged items of the scene as errors");
+    app.add_option("--report", a.report, "Write what was made as JSON; of several scenes, into this folder");
     app.add_option("--compress", a.compress, "none, zstd or zstd:LEVEL (1-19)")->capture_default_str();
+    app.add_option("--textures", a.textures, "bc: block-compressed (BC7, BC5, BC4); raw: RGBA8")
+        ->check(CLI::IsMember({"bc", "raw"}))
+        ->capture_default_str();
+    CLI::Option* list = app.add_flag("--list", a.list,
+                                     "Print the scenes, variants, cameras, animations, skins, lights "
+                                     "and materials of the file, and compile nothing");
+    app.add_flag("--json", a.json, "With --list: print JSON")->needs(list);
+    app.add_option("--deps", a.dependencies, "Write what the packages were made from, for make and ninja");
+    app.add_option("--cache", a.cache, "Folder that keeps results of costly stages for the next run");
+    app.add_option("--cache-size", a.cache_bytes, "Size to which the folder is trimmed (k, m, g, ...)")
+        ->transform(CLI::AsSizeValue(false))
+        ->default_str("4g");
+    app.add_option("-j,--jobs", a.threads, "Threads in all (default: as many as cores)")->check(CLI::Range(1, 1024));
+    app.add_flag("-f,--force", a.force, "Compile what is up to date, too");
     app.add_flag("-q,--quiet", a.quiet, "Print errors only");
     app.set_version_flag("--version", "lumicut-compile " LUMICUT_VERSION);
 }
@@ -80,37 +121,70 @@ Result<PunctualLight> parseSun(const std::string& text)
     return sun;
 }
 
-/// Options that shape the package, in a fixed order; paths without folders.
-std::vector<std::string> provenance(const Arguments& a)
+Status parseEnvironment(const Arguments& a, CompileOptions& options)
 {
-    std::vector<std::string> text;
     if (!a.environment.empty())
-        text.push_back("--env " + std::filesystem::path(a.environment).filename().string());
-    if (!a.sun.empty())
-        text.push_back("--sun " + a.sun);
-    for (const std::string& view : a.views)
-        text.push_back("--view " + view);
-    if (a.no_default_light)
-        text.push_back("--no-default-light");
-    if (a.compress != "none")
-        text.push_back("--compress " + a.compress);
+        options.environment = a.environment;
+    if (!a.environment_rotation.empty())
+    {
+        const Result<std::vector<double>> degrees = parseNumbers(a.environment_rotation, 1);
+        if (!degrees)
+            return Error{ExitCode::kUsage, fmt::format("--env-rotate: {} (DEGREES)", degrees.error().message)};
+        options.environment_rotation = float(std::remainder(degrees->front(), 360.0) * std::numbers::pi / 180);
+    }
+    if (!a.environment_scale.empty())
+    {
+        const Result<std::vector<double>> factor = parseNumbers(a.environment_scale, 1);
+        if (!factor)
+            return Error{ExitCode::kUsage, fmt::format("--env-scale: {} (FACTOR)", factor.error().message)};
+        options.environment_scale = float(factor->front());
+        if (!(options.environment_scale > 0) || !std::isfinite(options.environment_scale))
+            return Error{ExitCode::kUsage, fmt::format("--env-scale \"{}\" is not a positive number", a.environment_scale)};
+    }
+    return Success{};
+}
+
+/// Options that shape the package, in the order of their declaration; paths without folders.
+std::vector<std::string> provenance(const CLI::App& app)
+{
+    static const std::set<std::string> kLeaveItAsItIs{"--help",       "--version", "--output", "--report", "--deps",
+                                                      "--cache",      "--cache-size", "--jobs",   "--force",  "--quiet"};
+    static const std::set<std::string> kPaths{"--env"};
+    std::vector<std::string> text;
+    for (const CLI::Option* option : app.get_options())
+    {
+        const std::string name = option->get_name();
+        if (option->count() == 0 || option->get_positional() || kLeaveItAsItIs.contains(name))
+            continue;
+        if (option->get_items_expected() == 0)
+            text.push_back(name);
+        else
+            for (const std::string& value : option->results())
+                if (value != option->get_default_str())
+                    text.push_back(name + " " +
+                                   (kPaths.contains(name) ? std::filesystem::path(value).filename().string() : value));
+    }
     return text;
 }
 
-Result<CompileOptions> toOptions(const Arguments& a)
+/// The options that all scenes share.
+Result<CompileOptions> toOptions(const CLI::App& app, const Arguments& a)
 {
     CompileOptions options;
-    options.input = a.input;
-    options.output =
-        a.output.empty() ? std::filesystem::path(a.input).replace_extension(".lumi") : std::filesystem::path(a.output);
-    options.default_light = !a.no_default_light;
-    options.text = provenance(a);
-    if (!a.environment.empty())
-        options.environment = a.environment;
+    options.default_light = a.default_light == "on"    ? DefaultLight::kOn
+                            : a.default_light == "off" ? DefaultLight::kOff
+                                                       : DefaultLight::kAuto;
+    options.strict = a.strict;
+    options.text = provenance(app);
+    if (const Status status = parseEnvironment(a, options); !status)
+        return status.error();
+    options.scene = a.scene;
+    options.variant = a.variant;
     const Result<int> level = parseCompression(a.compress);
     if (!level)
         return level.error();
     options.zstd_level = *level;
+    options.textures = a.textures == "raw" ? TextureCompression::kRaw : TextureCompression::kBlocks;
     if (!a.sun.empty())
     {
         const Result<PunctualLight> sun = parseSun(a.sun);
@@ -125,27 +199,101 @@ Result<CompileOptions> toOptions(const Arguments& a)
             return view.error();
         options.views.push_back(std::move(*view));
     }
-    if (!a.quiet)
-        options.progress = [](double seconds, const std::string& line)
-        { fmt::print(stderr, "[{:5.2f} s] {}\n", seconds, line); };
     return options;
 }
 
-Status writeReport(const std::string& path, const std::string& json)
+/// Of each scene in turn. @return the first error
+int printLists(const Arguments& a)
 {
-    std::ofstream stream(path, std::ios::binary);
-    if (!(stream << json << std::flush))
-        return Error{ExitCode::kIo, "the report cannot be written"};
-    return Success{};
+    ExitCode code = ExitCode::kOk;
+    for (const std::string& scene : a.scenes)
+    {
+        const auto groups = listGltf(scene);
+        if (groups)
+            fmt::print("{}", a.json ? listJson(*groups, scene) : listText(*groups));
+        else if (const ExitCode failed = reportError(scene, groups.error()); code == ExitCode::kOk)
+            code = failed;
+    }
+    return int(code);
+}
+
+/// Where what is made of `scene` goes: `given` itself, or into it where it is a folder or there are several scenes.
+Result<std::filesystem::path> placeFor(const std::filesystem::path& scene, const std::string& given, const char* suffix,
+                                       bool several)
+{
+    namespace fs = std::filesystem;
+    std::error_code problem;
+    if (!several && !given.ends_with('/') && !fs::is_directory(given, problem))
+        return fs::path(given);
+    if (fs::exists(given, problem) && !fs::is_directory(given, problem))
+        return Error{ExitCode::kUsage, "it is a file; several scenes need a folder", given};
+    if (several && !given.ends_with('/') && fs::path(given).extension() == suffix)
+        return Error{ExitCode::kUsage, fmt::format("several scenes need a folder; a folder of this name ends in /"), given};
+    fs::create_directories(given, problem);
+    if (problem)
+        return Error{ExitCode::kIo, fmt::format("the folder cannot be made: {}", problem.message()), given};
+    return fs::path(given) / scene.filename().replace_extension(suffix);
+}
+
+Result<CompileManyOptions> toJobs(const CLI::App& app, const Arguments& a)
+{
+    const Result<CompileOptions> shared = toOptions(app, a);
+    if (!shared)
+        return shared.error();
+    CompileManyOptions many{.jobs = {},
+                            .threads = a.threads,
+                            .force = a.force,
+                            .quiet = a.quiet,
+                            .cache_folder = {},
+                            .cache_bytes = a.cache_bytes,
+                            .dependency_file = {}};
+    const bool several = a.scenes.size() > 1;
+    std::map<std::filesystem::path, std::string> taken; // by output
+    for (const std::string& scene : a.scenes)
+    {
+        CompileJob& job = many.jobs.emplace_back(CompileJob{*shared, {}});
+        job.options.input = scene;
+        job.options.output = std::filesystem::path(scene).replace_extension(".lumi");
+        if (!a.output.empty())
+        {
+            const auto place = placeFor(scene, a.output, ".lumi", several);
+            if (!place)
+                return place.error();
+            job.options.output = *place;
+        }
+        if (const auto [other, is_new] = taken.try_emplace(job.options.output.lexically_normal(), scene); !is_new)
+            return Error{ExitCode::kUsage, fmt::format("its package would be the same file as that of \"{}\": {}",
+                                                       other->second, job.options.output.string()),
+                         scene};
+        if (a.report.empty())
+            continue;
+        const auto place = placeFor(scene, a.report, ".json", several);
+        if (!place)
+            return place.error();
+        if (const Status status = checkWritable(*place); !status)
+            return status.error().about(place->string());
+        job.report = *place;
+    }
+    if (!a.cache.empty())
+        many.cache_folder = a.cache;
+    if (!a.dependencies.empty())
+    {
+        if (const Status status = checkWritable(a.dependencies); !status)
+            return status.error().about(a.dependencies);
+        many.dependency_file = a.dependencies;
+    }
+    return many;
 }
 } // namespace
 
 int main(int argc, char** argv)
 {
-    CLI::App app{"Compiles a glTF scene into a package for lumicut-play.", "lumicut-compile"};
-    app.footer("Exit codes: 0 ok, 1 usage, 2 I/O, 3 invalid scene, 4 out of memory, 5 unsupported.");
+    CLI::App app{"Compiles glTF scenes into packages for lumicut-play.", "lumicut-compile"};
+    app.footer("Exit codes: 0 ok, 1 usage, 2 I/O, 3 invalid scene, 4 out of memory, 5 unsupported; of several scenes the\n"
+               "first that fails decides, and the others are compiled.");
     Arguments arguments;
     declare(app, arguments);
+    addDocumentation(app);
     try
     {
         app.parse(argc, argv);
@@ -154,25 +302,13 @@ int main(int argc, char** argv)
     {
         if (e.get_exit_code() == 0) // --help, --version
             return app.exit(e);
-        return fail("lumicut-compile", {ExitCode::kUsage, fmt::format("{} (see --help)", e.what())});
+        return int(reportError("lumicut-compile", {ExitCode::kUsage, fmt::format("{} (see --help)", e.what())}));
     }
-    const Result<CompileOptions> options = toOptions(arguments);
-    if (!options)
-        return fail("lumicut-compile", options.error());
-    if (!arguments.report.empty())
-        if (const Status status = checkWritable(arguments.report); !status)
-            return fail(arguments.report, status.error());
-    const Result<CompileReport> report = compile(*options);
-    if (!report)
-        return fail(arguments.input, report.error());
-    if (!arguments.quiet)
-    {
-        for (const std::string& warning : report->meta.provenance->warnings)
-            fmt::print(stderr, "{}: warning: {}\n", arguments.input, warning);
-        fmt::print("{}", summaryText(*report, *options));
-    }
-    if (!arguments.report.empty())
-        if (const Status status = writeReport(arguments.report, reportJson(*report, *options)); !status)
-            return fail(arguments.report, status.error());
-    return int(ExitCode::kOk);
+    if (arguments.list)
+        return printLists(arguments);
+    const Result<CompileManyOptions> jobs = toJobs(app, arguments);
+    if (!jobs)
+        return int(reportError("lumicut-compile", jobs.error()));
+    removeTemporaryFilesOnSignals();
+    return int(compileMany(*jobs));
 }

@@ -2,7 +2,6 @@
 
 #include "compiler/encode.h"
 #include "compiler/linear.h"
-#include "format/check.h"
 
 #include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
 
@@ -43,22 +42,6 @@ PositionKey positionKey(gpu::vec3 p) // adding 0 turns -0 into 0
             std::bit_cast<uint32_t>(p.z + 0.0f)};
 }
 
-/// Appends a copy of vertex `v` of every array but the normals.
-uint32_t duplicateVertex(MeshPrimitive& mesh, uint32_t v)
-{
-    const auto copy = [v](auto& array)
-    {
-        if (!array.empty())
-            array.push_back(typename std::decay_t<decltype(array)>::value_type(array[v]));
-    };
-    copy(mesh.positions);
-    copy(mesh.tangents);
-    copy(mesh.uv0);
-    copy(mesh.uv1);
-    copy(mesh.colors);
-    return uint32_t(mesh.positions.size() - 1);
-}
-
 /// The half-edge mesh of the welded triangles. A triangle that would make it non-manifold gets vertices of its own.
 /// @param faces [triangle_count] the face of each triangle; invalid where the triangle is degenerate
 Surface weldedSurface(const MeshPrimitive& mesh, std::vector<Surface::FaceHandle>& faces)
@@ -96,50 +79,21 @@ Surface weldedSurface(const MeshPrimitive& mesh, std::vector<Surface::FaceHandle
     }
     return surface;
 }
-
-/// Coordinates of vertex `v` in the normal map.
-gpu::vec2 mapCoordinates(const MeshPrimitive& mesh, uint32_t v, const TextureUse& normal_map)
-{
-    const std::vector<gpu::vec2>& source = (normal_map.sampling & gpu::kSampleUv1) != 0 ? mesh.uv1 : mesh.uv0;
-    if (v >= source.size())
-        return {};
-    const gpu::vec3 homogeneous{source[v].x, source[v].y, 1};
-    return {dot(normal_map.u_row, homogeneous), dot(normal_map.v_row, homogeneous)};
-}
-
-/// Of a triangle in the normal map's coordinates.
-struct MapEdges
-{
-    float du1, dv1, du2, dv2;
-
-    float determinant() const { return du1 * dv2 - du2 * dv1; }
-};
-
-MapEdges mapEdges(const MeshPrimitive& mesh, gpu::uvec3 t, const TextureUse& normal_map)
-{
-    const gpu::vec2 a = mapCoordinates(mesh, t.x, normal_map);
-    const gpu::vec2 b = mapCoordinates(mesh, t.y, normal_map);
-    const gpu::vec2 c = mapCoordinates(mesh, t.z, normal_map);
-    return {b.x - a.x, b.y - a.y, c.x - a.x, c.y - a.y};
-}
-
-/// Area-weighted tangent of one triangle along u; 0 where the coordinates are degenerate.
-Vec3d triangleTangent(const MeshPrimitive& mesh, gpu::uvec3 t, const MapEdges& map)
-{
-    const Vec3d corner = toDouble(mesh.positions[t.x]);
-    const Vec3d e1 = toDouble(mesh.positions[t.y]) - corner;
-    const Vec3d e2 = toDouble(mesh.positions[t.z]) - corner;
-    const Vec3d along_u = unitOrZero((e1 * map.dv2 - e2 * map.dv1) * (map.determinant() < 0 ? -1 : 1));
-    return along_u * length(cross(e1, e2));
-}
 } // namespace
 
-float handedness(const MeshPrimitive& mesh, gpu::uvec3 t, const TextureUse& normal_map)
+uint32_t duplicateVertex(MeshPrimitive& mesh, uint32_t v)
 {
-    // cross(normal, tangent) * w must point up in the image, towards -v: a quad with u to its right and v down has w
-    // = 1.
-    const float determinant = mapEdges(mesh, t, normal_map).determinant();
-    return determinant < 0 ? 1.0f : determinant > 0 ? -1.0f : 0.0f;
+    const auto copy = [v](auto& array)
+    {
+        if (!array.empty())
+            array.push_back(typename std::decay_t<decltype(array)>::value_type(array[v]));
+    };
+    copy(mesh.positions);
+    copy(mesh.tangents);
+    copy(mesh.uv0);
+    copy(mesh.uv1);
+    copy(mesh.colors);
+    return uint32_t(mesh.positions.size() - 1);
 }
 
 uint64_t generateNormals(MeshPrimitive& mesh, float crease_angle)
@@ -198,46 +152,4 @@ uint64_t generateNormals(MeshPrimitive& mesh, float crease_angle)
         }
     }
     return mesh.normals.size();
-}
-
-uint64_t generateTangents(MeshPrimitive& mesh, const TextureUse& normal_map)
-{
-    check(mesh.normals.size() == mesh.positions.size(), "{} normals", mesh.normals.size());
-    const size_t source_count = mesh.positions.size();
-    std::vector<Vec3d> sums(source_count);
-    std::vector<float> signs(source_count, 0);
-    std::vector<uint32_t> mirrored(source_count, 0); // a vertex's copy of the other handedness, 0: none
-    const auto add = [&](uint32_t v, const Vec3d& tangent, float sign)
-    {
-        if (signs[v] != 0 && signs[v] != sign)
-        {
-            if (mirrored[v] == 0)
-            {
-                mirrored[v] = duplicateVertex(mesh, v);
-                mesh.normals.push_back(gpu::vec3(mesh.normals[v]));
-                sums.push_back({});
-                signs.push_back(sign);
-            }
-            v = mirrored[v];
-        }
-        signs[v] = sign;
-        sums[v] = sums[v] + tangent;
-        return v;
-    };
-    for (gpu::uvec3& t : mesh.triangles)
-    {
-        const Vec3d tangent = triangleTangent(mesh, t, mapEdges(mesh, t, normal_map));
-        if (const float sign = handedness(mesh, t, normal_map); sign != 0 && tangent != Vec3d{})
-            t = {add(t.x, tangent, sign), add(t.y, tangent, sign), add(t.z, tangent, sign)};
-    }
-
-    mesh.tangents.resize(mesh.positions.size());
-    for (size_t i = 0; i < mesh.tangents.size(); ++i)
-    {
-        const Vec3d n = toDouble(mesh.normals[i]);
-        const Vec3d sum = unitOrZero(sums[i]);
-        const gpu::vec3 t = directionOr(sum - n * dot(n, sum), anyOrthogonal(mesh.normals[i]));
-        mesh.tangents[i] = {t.x, t.y, t.z, signs[i] == 0 ? 1.0f : signs[i]};
-    }
-    return mesh.tangents.size();
 }

@@ -16,14 +16,9 @@ struct MeshPrimitive
     uint32_t material = 0;             // index into SceneData::materials
 };
 
-/// Handedness of the normal map's coordinates in triangle `t`, seen from the side where its corners run
-/// counter-clockwise: the glTF tangent's w for a normal on that side. 0 where the coordinates have no area.
-float handedness(const MeshPrimitive& mesh, gpu::uvec3 t, const TextureUse& normal_map);
+/// Appends a copy of vertex `v` to every array that has vertices but the normals. @return its index
+uint32_t duplicateVertex(MeshPrimitive& mesh, uint32_t v);
 
 /// Makes smooth normals: vertices at one position are welded, edges sharper than `crease_angle` (radians) stay sharp.
 /// Vertices may be added or split. @return how many vertices have made normals: all
 uint64_t generateNormals(MeshPrimitive& mesh, float crease_angle);
-
-/// Makes tangents along the u direction of the normal map's coordinates; vertices shared by triangles of opposite
-/// handedness are split. Needs normals. @return how many vertices have made tangents: all
-uint64_t generateTangents(MeshPrimitive& mesh, const TextureUse& normal_map);

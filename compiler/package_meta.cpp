@@ -44,13 +44,16 @@ std::unique_ptr<fb::CameraT> camera(const CameraView& view)
     c->up = box(view.up);
     c->vertical_fov = view.vertical_fov;
     c->orthographic_height = view.orthographic_height;
+    c->near_plane = view.near_plane;
+    c->far_plane = view.far_plane;
     return c;
 }
 
 std::unique_ptr<fb::TexturePageT> texturePage(const TexturePage& page)
 {
     auto p = std::make_unique<fb::TexturePageT>();
-    p->encoding = page.srgb ? fb::TextureEncoding::Rgba8Srgb : fb::TextureEncoding::Rgba8Unorm;
+    p->encoding = page.encoding;
+    p->tiled = page.tiled;
     p->width = page.width;
     p->height = page.height;
     p->layers = page.layers;
@@ -82,6 +85,7 @@ fb::MetaT makeMeta(const CompileOptions& options, const SceneData& scene, const 
         meta.environment->importance_width = importance->width;
         meta.environment->importance_height = importance->height;
         meta.environment->average_radiance = box(importance->average_radiance);
+        meta.environment->rotation = scene.environment->rotation;
     }
     meta.statistics = statistics(scene, bvh, lights);
     meta.provenance = std::make_unique<fb::ProvenanceT>();
@@ -91,7 +95,7 @@ fb::MetaT makeMeta(const CompileOptions& options, const SceneData& scene, const 
     meta.provenance->generator = scene.generator;
     if (!scene.copyright.empty())
         meta.provenance->copyright.push_back(scene.copyright);
-    meta.provenance->warnings = scene.warnings;
+    meta.provenance->warnings = sentences(scene.warnings);
     meta.material_names = scene.material_names;
     const auto any = [&](uint32_t flag)
     {
@@ -101,6 +105,21 @@ fb::MetaT makeMeta(const CompileOptions& options, const SceneData& scene, const 
     meta.has_alpha = any(gpu::kTriangleAlpha);
     meta.has_thin = any(gpu::kTriangleThin);
     return meta;
+}
+
+void noteInputs(const std::vector<InputFile>& files, const std::optional<ContentHash>& environment,
+                fb::ProvenanceT& provenance)
+{
+    const auto content = [](const std::optional<ContentHash>& hash)
+    { return hash ? std::make_unique<fb::Hash128>(hash->low, hash->high) : nullptr; };
+    provenance.compiler = compilerHash();
+    for (const InputFile& file : files)
+    {
+        auto& input = provenance.inputs.emplace_back(std::make_unique<fb::InputFileT>());
+        input->name = file.name;
+        input->content = content(file.content);
+    }
+    provenance.environment_content = content(environment);
 }
 
 std::vector<uint8_t> encodeMeta(const fb::MetaT& meta)

@@ -4,12 +4,17 @@
 #include "compiler/build_lights.h"
 #include "compiler/compile.h"
 #include "compiler/environment.h"
+#include "compiler/input_files.h"
 #include "compiler/texture_pages.h"
 
 /// @param importance null without environment
 lumicut::fb::MetaT makeMeta(const CompileOptions& options, const SceneData& scene, const Bvh& bvh,
                             const LightTables& lights, const TexturePages& textures,
                             const EnvironmentImportance* importance);
+
+/// Notes what the package is made from, for isUpToDate().
+void noteInputs(const std::vector<InputFile>& files, const std::optional<ContentHash>& environment,
+                lumicut::fb::ProvenanceT& provenance);
 
 /// The META chunk's bytes.
 std::vector<uint8_t> encodeMeta(const lumicut::fb::MetaT& meta);

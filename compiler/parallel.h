@@ -1,4 +1,4 @@
-// Runs independent pieces of work on all cores; results go into slots, so that the order never shows.
+// Runs independent pieces of work on several threads; results go into slots, so that the order never shows.
 #pragma once
 #include <algorithm>
 #include <atomic>
@@ -7,6 +7,9 @@
 #include <mutex>
 #include <thread>
 #include <vector>
+
+/// Threads that parallelFor() takes, itself included, where this thread calls it.
+inline thread_local unsigned thread_limit = std::max(1u, std::thread::hardware_concurrency());
 
 /// Calls body(0) .. body(count - 1), each once, from several threads; rethrows the first exception of a third party.
 template <typename Body>
@@ -30,10 +33,15 @@ void parallelFor(size_t count, const Body& body)
             }
         }
     };
-    const size_t thread_count = std::min<size_t>(std::max(1u, std::thread::hardware_concurrency()), count);
+    const size_t thread_count = std::min<size_t>(thread_limit, count);
     std::vector<std::thread> threads;
     for (size_t i = 1; i < thread_count; ++i)
-        threads.emplace_back(work);
+        threads.emplace_back(
+            [&work]
+            {
+                thread_limit = 1;
+                work();
+            });
     work();
     for (std::thread& thread : threads)
         thread.join();

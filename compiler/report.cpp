@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include <array>
+#include <fstream>
 #include <iterator>
 
 namespace
@@ -14,6 +15,11 @@ std::string chunkLabel(const package::WrittenChunk& chunk)
 {
     return chunk.id == package::kTexturePageChunk ? fmt::format("{} {}", package::chunkName(chunk.id), chunk.index)
                                                   : package::chunkName(chunk.id);
+}
+
+std::string hashText(uint64_t hash)
+{
+    return fmt::format("{:016x}", hash);
 }
 
 std::array<double, 3> originOf(const lumicut::fb::MetaT& meta)
@@ -63,6 +69,9 @@ std::string summaryText(const CompileReport& report, const CompileOptions& optio
     for (const CompileStage& stage : report.stages)
         fmt::format_to(out, " {} {:.2f}", stage.name, stage.seconds);
     fmt::format_to(out, "\n");
+    fmt::format_to(out, "  memory     {} MiB at most, {} threads\n", report.peak_bytes >> 20, report.threads);
+    if (options.cache != nullptr)
+        fmt::format_to(out, "  cache      {} found, {} made\n", report.cache_hits, report.cache_misses);
     return text;
 }
 
@@ -74,6 +83,7 @@ std::string reportJson(const CompileReport& report, const CompileOptions& option
     json["tool_version"] = LUMICUT_VERSION;
     json["source"] = options.input.filename().string();
     json["package"] = options.output.filename().string();
+    json["package_hash"] = hashText(report.package_hash);
     json["options"] = report.meta.provenance->options;
     json["triangles"] = s.triangles;
     json["vertices"] = s.vertices;
@@ -97,7 +107,9 @@ std::string reportJson(const CompileReport& report, const CompileOptions& option
     json["images"] = report.images;
     json["texture_pages"] = ordered_json::array();
     for (const auto& page : report.meta.texture_pages)
-        json["texture_pages"].push_back({{"srgb", page->encoding == lumicut::fb::TextureEncoding::Rgba8Srgb},
+        json["texture_pages"].push_back({{"encoding", lumicut::fb::EnumNameTextureEncoding(page->encoding)},
+                                         {"srgb", package::isSrgb(page->encoding)},
+                                         {"tiled", page->tiled},
                                          {"width", page->width},
                                          {"height", page->height},
                                          {"layers", page->layers},
@@ -117,6 +129,26 @@ std::string reportJson(const CompileReport& report, const CompileOptions& option
     for (const CompileStage& stage : report.stages)
         json["stages"].push_back({{"name", stage.name}, {"seconds", stage.seconds}});
     json["total_seconds"] = report.total_seconds;
+    json["threads"] = report.threads;
+    json["peak_bytes"] = report.peak_bytes;
+    json["cache"] = {{"found", report.cache_hits}, {"made", report.cache_misses}};
+    json["inputs"] = ordered_json::array();
+    for (const auto& input : report.meta.provenance->inputs)
+        json["inputs"].push_back({{"name", input->name}, {"found", input->content != nullptr}});
     json["warnings"] = report.meta.provenance->warnings;
+    json["findings"] = ordered_json::array();
+    for (const Warning& warning : report.warnings)
+        json["findings"].push_back({{"kind", kindName(warning.kind)},
+                                    {"pointer", warning.pointer},
+                                    {"message", warning.message},
+                                    {"stand_in", warning.stand_in},
+                                    {"damage", isDamage(warning.kind)}});
     return json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+}
+
+bool isReportOf(const std::filesystem::path& report, uint64_t package_hash)
+{
+    std::ifstream stream(report, std::ios::binary);
+    const nlohmann::json json = nlohmann::json::parse(stream, nullptr, false);
+    return json.is_object() && json.value("package_hash", nlohmann::json()) == hashText(package_hash);
 }

@@ -1,7 +1,5 @@
 # Scene data in, GPU tables out: the hierarchy, the lights, the environment. Knows neither glTF nor the package file.
 find_package(embree 3.13 REQUIRED)
-find_package(OpenEXR REQUIRED)
-find_path(STB_INCLUDE_DIR stb_image.h PATH_SUFFIXES stb REQUIRED)
 
 add_library(lumicut_scene_build STATIC
     ${CMAKE_CURRENT_LIST_DIR}/build_bvh.cpp
@@ -10,9 +8,9 @@ add_library(lumicut_scene_build STATIC
     ${CMAKE_CURRENT_LIST_DIR}/bvh_split.cpp
     ${CMAKE_CURRENT_LIST_DIR}/build_lights.cpp
     ${CMAKE_CURRENT_LIST_DIR}/caustic_targets.cpp
+    ${CMAKE_CURRENT_LIST_DIR}/cube_map.cpp
     ${CMAKE_CURRENT_LIST_DIR}/emission_average.cpp
     ${CMAKE_CURRENT_LIST_DIR}/environment.cpp
-    ${CMAKE_CURRENT_LIST_DIR}/environment_exr.cpp
-    ${CMAKE_CURRENT_LIST_DIR}/environment_hdr.cpp)
-target_include_directories(lumicut_scene_build SYSTEM PRIVATE ${STB_INCLUDE_DIR})
-target_link_libraries(lumicut_scene_build PUBLIC lumicut_options lumicut_format fmt::fmt PRIVATE embree OpenEXR::OpenEXR)
+    ${CMAKE_CURRENT_LIST_DIR}/environment_map.cpp
+    ${CMAKE_CURRENT_LIST_DIR}/environment_sink.cpp)
+target_link_libraries(lumicut_scene_build PUBLIC lumicut_options lumicut_format fmt::fmt PRIVATE lumicut_image_read embree Threads::Threads)

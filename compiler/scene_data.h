@@ -1,6 +1,7 @@
 // What the compiler knows of a scene between reading glTF and writing the package.
 #pragma once
 #include "compiler/vec3d.h"
+#include "compiler/warnings.h"
 #include "format/gpu_scene.h"
 
 #include <cstdint>
@@ -16,6 +17,8 @@ struct TextureImage
     uint32_t height = 0;
     bool srgb = false;           // base colour, emissive, specular colour
     std::vector<uint8_t> texels; // [4 * width * height]
+    std::vector<uint16_t> deep{}; // the same in 16 bits where the file has more than 8, else empty
+    bool linear_light = false;     // colours are light, in spite of what materials want; until decodeImages() returns
 };
 
 /// One use of a texture by a material; becomes a gpu::TextureRef once images have found their page and layer.
@@ -62,6 +65,7 @@ struct EnvironmentImage
     uint32_t width = 0;
     uint32_t height = 0;
     std::vector<gpu::vec4> texels; // [width * height] W/(m^2 sr), row 0 at +Y, w unused (1)
+    float rotation = 0;            // radians about +Y by which the map is turned, -pi to pi
 };
 
 struct CameraView
@@ -72,6 +76,8 @@ struct CameraView
     gpu::vec3 up{0, 1, 0};       // unit, orthogonal to forward
     float vertical_fov = 0;        // radians; 0: orthographic
     float orthographic_height = 0; // 0: perspective
+    float near_plane = 0;          // distance along forward before which nothing is seen
+    float far_plane = 0;           // distance along forward behind which nothing is seen; 0: there is none
 };
 
 /// Counts of what import and clean-up did; they end in the report and in Meta.statistics.
@@ -89,7 +95,7 @@ struct SceneData
     std::string generator;
     std::string copyright;
     WorldFrame frame;
-    std::vector<std::string> warnings; // full sentences
+    Warnings warnings;
     WorldMesh mesh;
     std::vector<gpu::Material> materials; // *_texture members index texture_uses
     std::vector<std::string> material_names;

@@ -1,222 +1,251 @@
 #include "compiler/texture_pages.h"
 
+#include "compiler/bc4_encode.h"
+#include "compiler/bc7_encode.h"
+#include "compiler/mip_chain.h"
 #include "compiler/parallel.h"
-#include "format/check.h"
+#include "compiler/texture_plan.h"
+#include "format/texture_tile.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <compare>
 #include <cstring>
-#include <map>
+#include <optional>
 
 namespace
 {
-/// What images of one page have in common; ordered, so that pages come in one order always.
-struct PageKey
+using package::TextureEncoding;
+constexpr uint64_t kBatchTexels = 64u << 20; // of level 0: bounds the memory that chains take
+constexpr uint32_t kBandUnits = 1u << 14;    // blocks or texels that one piece of work writes, about
+
+/// Some rows of blocks (or texels) of one level of one image, and where they go.
+struct Band
 {
-    uint32_t width;
-    uint32_t height;
-    bool srgb;
-    auto operator<=>(const PageKey&) const = default;
-    uint64_t texels() const { return uint64_t(width) * height; }
+    const MipChain* chain = nullptr;
+    TextureRole role;
+    uint32_t level = 0;
+    TextureEncoding encoding{};
+    bool tiled = false;
+    uint32_t units_across = 0, first_row = 0, row_count = 0;
+    uint8_t* out = nullptr; // of row 0
+    size_t pitch = 0;       // bytes from row to row
 };
-using Groups = std::map<PageKey, std::vector<uint32_t>>; // image indices
 
-constexpr uint32_t kLinearSteps = 4096; // of the table back to sRGB; finer than its darkest step (1 / 3295)
-
-struct SrgbTables
+/// The texel of the image that place (x, y) of the page's part shows: past the edge it goes on as the last one, in a tile
+/// anew.
+std::array<float, 4> texelAt(const Band& band, uint32_t x, uint32_t y)
 {
-    std::array<float, 256> to_linear;
-    std::array<uint8_t, kLinearSteps + 1> from_linear;
+    const uint32_t width = band.chain->width(band.level), height = band.chain->height(band.level);
+    std::array<float, 4> texel =
+        band.tiled ? band.chain->texel(band.level, (x + width - gpu::kTileBorder) % width,
+                                       (y + height - gpu::kTileBorder) % height)
+                   : band.chain->texel(band.level, std::min(x, width - 1), std::min(y, height - 1));
+    if (band.encoding == TextureEncoding::Bc5Unorm)
+        normalizeTexel(texel);
+    return texel;
+}
 
-    SrgbTables()
+void writeTexels(const Band& band, uint32_t y)
+{
+    uint8_t* to = band.out + band.pitch * y;
+    for (uint32_t x = 0; x < band.units_across; ++x)
+        for (const float value : texelAt(band, x, y))
+            *to++ = uint8_t(value + 0.5f);
+}
+
+void writeBlocks(const Band& band, uint32_t row)
+{
+    const uint32_t bytes = package::unitBytes(band.encoding);
+    auto* to = reinterpret_cast<std::byte*>(band.out + band.pitch * row);
+    for (uint32_t column = 0; column < band.units_across; ++column, to += bytes)
     {
-        for (int i = 0; i < 256; ++i)
+        std::array<Lanes, 4> channels;
+        for (uint32_t i = 0; i < 16; ++i)
         {
-            const double s = i / 255.0;
-            to_linear[size_t(i)] = float(s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4));
+            const std::array<float, 4> texel =
+                texelAt(band, blocks::kSide * column + i % blocks::kSide, blocks::kSide * row + i / blocks::kSide);
+            for (size_t k = 0; k < 4; ++k)
+                channels[k].set(i, (band.role.channels >> k & 1) != 0 ? texel[k] : 0);
         }
-        for (uint32_t i = 0; i <= kLinearSteps; ++i)
-        {
-            const double l = double(i) / kLinearSteps;
-            const double s = l <= 0.0031308 ? l * 12.92 : 1.055 * std::pow(l, 1 / 2.4) - 0.055;
-            from_linear[i] = uint8_t(std::lround(s * 255));
-        }
+        if (band.encoding == TextureEncoding::Bc4Unorm || band.encoding == TextureEncoding::Bc5Unorm)
+            encodeBc4(channels[0], std::span<std::byte, 8>(to, 8));
+        if (band.encoding == TextureEncoding::Bc5Unorm)
+            encodeBc4(channels[1], std::span<std::byte, 8>(to + 8, 8));
+        if (bytes == 16 && band.encoding != TextureEncoding::Bc5Unorm)
+            encodeBc7(channels, (band.role.channels & gpu::kAlpha) != 0, std::span<std::byte, 16>(to, 16));
     }
+}
+
+/// One level as it goes into its page, in bands.
+void addBands(const TextureImage& image, const TextureRole& role, uint32_t level, const TexturePlace& place, TexturePage& page,
+              std::vector<Band>& bands)
+{
+    const auto across = [&](uint32_t side) { return package::unitsAcross(page.encoding, side); };
+    const uint32_t unit_bytes = package::unitBytes(page.encoding);
+    const uint32_t width = gpu::levelSide(image.width, level), height = gpu::levelSide(image.height, level);
+    Band band{nullptr, role, level, page.encoding, page.tiled};
+    uint32_t rows = 0;
+    if (page.tiled)
+    {
+        band.units_across = across(gpu::tileSide(width));
+        rows = across(gpu::tileSide(height));
+        band.pitch = size_t(across(page.width)) * unit_bytes;
+        band.out = page.texels.data() + package::levelBytes(page.encoding, page.width, page.height) * place.layer +
+                   band.pitch * across(gpu::tileLevelY(place.y, image.height, level)) +
+                   size_t(unit_bytes) * across(gpu::tileLevelX(place.x, image.width, level));
+    }
+    else
+    {
+        band.units_across = across(width);
+        rows = across(height);
+        band.pitch = size_t(band.units_across) * unit_bytes;
+        band.out = page.texels.data() + package::levelBytes(page.encoding, width, height) * place.layer;
+        for (uint32_t i = 0; i < level; ++i)
+            band.out += package::levelBytes(page.encoding, gpu::levelSide(image.width, i), gpu::levelSide(image.height, i)) * page.layers;
+    }
+    const uint32_t band_rows = std::max(kBandUnits / band.units_across, 1u);
+    for (band.first_row = 0; band.first_row < rows; band.first_row += band_rows)
+    {
+        band.row_count = std::min(band_rows, rows - band.first_row);
+        bands.push_back(band);
+    }
+}
+
+void writeBand(const Band& band)
+{
+    for (uint32_t row = band.first_row; row < band.first_row + band.row_count; ++row)
+        if (package::isBlocks(band.encoding))
+            writeBlocks(band, row);
+        else
+            writeTexels(band, row);
+}
+
+/// What is to be done for one image.
+struct ImageWork
+{
+    size_t image = 0;
+    std::vector<Band> bands; // all levels
+    ContentHash key;         // of what it becomes
+    bool is_there = false;   // it came from the cache
+    std::optional<MipChain> chain;
 };
 
-const SrgbTables& srgbTables()
+/// Visits what the bands cover, row by row.
+template <typename Visit>
+void forEachRow(const std::vector<Band>& bands, const Visit& visit)
 {
-    static const SrgbTables tables;
-    return tables;
+    for (const Band& band : bands)
+        for (uint32_t row = band.first_row; row < band.first_row + band.row_count; ++row)
+            visit(band.out + band.pitch * row, size_t(band.units_across) * package::unitBytes(band.encoding));
 }
 
-uint32_t levelCount(uint32_t width, uint32_t height)
+ContentHash workKey(const TextureImage& image, const TextureRole& role, const TexturePage& page)
 {
-    uint32_t levels = 1;
-    for (uint32_t side = std::max(width, height); side > 1; side /= 2)
-        ++levels;
-    return levels;
+    return Hasher("texture")
+        .values(image.width, image.height, uint32_t(page.encoding), uint32_t(page.tiled), role.channels, uint32_t(role.normal),
+                uint32_t(role.covers), role.coverage_cutoff, uint32_t(image.srgb))
+        .array(image.texels)
+        .array(image.deep)
+        .finish();
 }
 
-uint32_t half(uint32_t side)
+/// @return whether the cache had it: it is in its page then
+bool fetch(const ImageWork& work, const Cache& cache)
 {
-    return std::max(side / 2, 1u);
+    const auto found = cache.find(work.key);
+    size_t bytes = 0;
+    forEachRow(work.bands, [&](uint8_t*, size_t row_bytes) { bytes += row_bytes; });
+    if (!found || found->size() != bytes)
+        return false;
+    const std::byte* from = found->data();
+    forEachRow(work.bands,
+               [&](uint8_t* to, size_t row_bytes)
+               {
+                   std::memcpy(to, from, row_bytes);
+                   from += row_bytes;
+               });
+    return true;
 }
 
-/// Bilinear resampling, in linear light for sRGB images. Only for images that must join another page.
-std::vector<uint8_t> resample(const TextureImage& image, uint32_t width, uint32_t height)
+void keep(const ImageWork& work, const Cache& cache)
 {
-    const SrgbTables& tables = srgbTables();
-    std::vector<uint8_t> out(size_t(4) * width * height);
-    const auto tap = [](uint32_t i, uint32_t count, uint32_t source_count) {
-        return std::clamp((float(i) + 0.5f) * float(source_count) / float(count) - 0.5f, 0.0f, float(source_count - 1));
-    };
-    for (uint32_t y = 0; y < height; ++y)
-        for (uint32_t x = 0; x < width; ++x)
-        {
-            const float sx = tap(x, width, image.width), sy = tap(y, height, image.height);
-            const uint32_t x0 = uint32_t(sx), y0 = uint32_t(sy);
-            const uint32_t x1 = std::min(x0 + 1, image.width - 1), y1 = std::min(y0 + 1, image.height - 1);
-            const float fx = sx - float(x0), fy = sy - float(y0);
-            for (uint32_t c = 0; c < 4; ++c)
-            {
-                const bool decode = image.srgb && c < 3;
-                const auto at = [&](uint32_t px, uint32_t py)
+    std::vector<std::span<const std::byte>> rows;
+    forEachRow(work.bands, [&](uint8_t* row, size_t row_bytes) { rows.push_back(std::as_bytes(std::span(row, row_bytes))); });
+    cache.store(work.key, rows);
+}
+
+/// Writes images [begin, end) into their pages.
+void writeImages(std::vector<TextureImage>& images, std::span<const TextureRole> roles, TexturePlan& plan, size_t begin,
+                 size_t end, const Cache& cache)
+{
+    std::vector<ImageWork> works;
+    for (size_t i = begin; i < end; ++i)
+        if (plan.same_as[i] == i)
+            works.push_back({.image = i, .bands = {}, .key = {}, .is_there = false, .chain = {}});
+    parallelFor(works.size(),
+                [&](size_t w)
                 {
-                    const uint8_t v = image.texels[(size_t(py) * image.width + px) * 4 + c];
-                    return decode ? tables.to_linear[v] : float(v);
-                };
-                const float v = (at(x0, y0) * (1 - fx) + at(x1, y0) * fx) * (1 - fy) +
-                                (at(x0, y1) * (1 - fx) + at(x1, y1) * fx) * fy;
-                out[(size_t(y) * width + x) * 4 + c] =
-                    decode ? tables.from_linear[size_t(v * kLinearSteps + 0.5f)] : uint8_t(v + 0.5f);
+                    ImageWork& work = works[w];
+                    const size_t i = work.image;
+                    TexturePage& page = plan.pages[plan.places[i].page];
+                    const uint32_t levels = levelCount(images[i].width, images[i].height);
+                    for (uint32_t level = 0; level < levels; ++level)
+                        addBands(images[i], roles[i], level, plan.places[i], page, work.bands);
+                    if (cache.isOpen())
+                    {
+                        work.key = workKey(images[i], roles[i], page);
+                        work.is_there = fetch(work, cache);
+                    }
+                    if (!work.is_there)
+                        work.chain.emplace(images[i], roles[i]);
+                });
+    std::vector<Band> bands;
+    for (const ImageWork& work : works)
+        if (!work.is_there)
+            for (Band band : work.bands)
+            {
+                band.chain = &*work.chain;
+                bands.push_back(band);
             }
-        }
-    return out;
+    parallelFor(bands.size(), [&](size_t i) { writeBand(bands[i]); });
+    if (cache.isOpen())
+        parallelFor(works.size(),
+                    [&](size_t w)
+                    {
+                        if (!works[w].is_there)
+                            keep(works[w], cache);
+                    });
+    for (size_t i = begin; i < end; ++i)
+        images[i].texels = {}, images[i].deep = {};
 }
 
-/// The group that a group with `key` is cheapest to join: the next larger of its encoding, else the largest.
-Groups::iterator joinTarget(Groups& groups, const PageKey& key)
+gpu::TextureRef reference(const TextureUse& use, const TextureImage& image, const TexturePlace& place, const TexturePage& page)
 {
-    auto best = groups.end();
-    const auto cost = [&](const PageKey& k) // larger pages first by size, smaller ones only where there is none
-    { return k.texels() >= key.texels() ? k.texels() : (uint64_t(1) << 40) - k.texels(); };
-    for (auto it = groups.begin(); it != groups.end(); ++it)
-        if (it->first.srgb == key.srgb && it->first != key &&
-            (best == groups.end() || cost(it->first) < cost(best->first)))
-            best = it;
-    return best;
-}
-
-/// Merges the smallest groups into others until the pages suffice.
-void limitGroups(Groups& groups)
-{
-    const auto memory = [](const Groups::value_type& group) { return group.first.texels() * group.second.size(); };
-    while (groups.size() > gpu::kTexturePageCount)
-    {
-        auto smallest = groups.end();
-        for (auto it = groups.begin(); it != groups.end(); ++it)
-            if (joinTarget(groups, it->first) != groups.end() &&
-                (smallest == groups.end() || memory(*it) < memory(*smallest)))
-                smallest = it;
-        check(smallest != groups.end(), "{} groups", groups.size());
-        std::vector<uint32_t>& into = joinTarget(groups, smallest->first)->second;
-        into.insert(into.end(), smallest->second.begin(), smallest->second.end());
-        std::sort(into.begin(), into.end());
-        groups.erase(smallest);
-    }
-}
-
-TexturePage emptyPage(const PageKey& key, uint32_t layers)
-{
-    TexturePage page{key.srgb, key.width, key.height, layers, levelCount(key.width, key.height), {}};
-    size_t texels = 0;
-    for (uint32_t level = 0, w = key.width, h = key.height; level < page.levels; ++level, w = half(w), h = half(h))
-        texels += size_t(w) * h * layers;
-    page.texels.resize(4 * texels);
-    return page;
-}
-
-/// Writes one layer of all levels.
-void fillLayer(TexturePage& page, uint32_t layer, TextureImage& image)
-{
-    if (image.width != page.width || image.height != page.height)
-        image.texels = resample(image, page.width, page.height);
-    uint8_t* level = page.texels.data(); // of layer 0
-    uint32_t width = page.width;
-    uint32_t height = page.height;
-    std::memcpy(level + image.texels.size() * layer, image.texels.data(), image.texels.size());
-    for (uint32_t i = 1; i < page.levels; ++i)
-    {
-        const size_t bytes = size_t(4) * width * height;
-        const size_t smaller_bytes = size_t(4) * half(width) * half(height);
-        uint8_t* smaller = level + bytes * page.layers;
-        halveImage(level + bytes * layer, width, height, page.srgb, smaller + smaller_bytes * layer);
-        level = smaller;
-        width = half(width);
-        height = half(height);
-    }
-    image.texels = {};
+    return {.page = place.page,
+            .layer = place.layer,
+            .sampling = use.sampling | (page.tiled ? gpu::kSampleTile : 0u) |
+                        (page.encoding == TextureEncoding::Bc5Unorm ? gpu::kSampleNormalXy : 0u),
+            .origin = place.x | place.y << 16,
+            .size = image.width | image.height << 16,
+            .u_row = use.u_row,
+            .v_row = use.v_row};
 }
 } // namespace
 
-void halveImage(const uint8_t* from, uint32_t width, uint32_t height, bool srgb, uint8_t* to)
+TexturePages buildTexturePages(std::vector<TextureImage>& images, const std::vector<TextureUse>& uses,
+                               std::span<const gpu::Material> materials, TextureCompression compression, const Cache& cache)
 {
-    const SrgbTables& tables = srgbTables();
-    const uint32_t out_width = half(width);
-    const uint32_t out_height = half(height);
-    const size_t right = width > 1 ? 4 : 0;
-    const size_t down = height > 1 ? size_t(width) * 4 : 0;
-    for (uint32_t y = 0; y < out_height; ++y)
+    const std::vector<TextureRole> roles = textureRoles(materials, uses, images.size());
+    TexturePlan plan = planTextures(images, roles, compression);
+    for (size_t begin = 0, end = 0; begin < images.size(); begin = end)
     {
-        const uint8_t* p = from + 2 * y * down;
-        for (uint32_t x = 0; x < out_width; ++x, p += 2 * right, to += 4)
-        {
-            for (int c = 0; c < 3; ++c)
-            {
-                const uint8_t* q = p + c;
-                if (srgb)
-                {
-                    const float sum = tables.to_linear[q[0]] + tables.to_linear[q[right]] + tables.to_linear[q[down]] +
-                                      tables.to_linear[q[right + down]];
-                    to[c] = tables.from_linear[size_t(sum * (kLinearSteps / 4.0f) + 0.5f)];
-                }
-                else
-                    to[c] = uint8_t((q[0] + q[right] + q[down] + q[right + down] + 2) / 4);
-            }
-            to[3] = uint8_t((p[3] + p[3 + right] + p[3 + down] + p[3 + right + down] + 2) / 4);
-        }
+        uint64_t texels = 0;
+        for (; end < images.size() && (end == begin || texels < kBatchTexels); ++end)
+            texels += uint64_t(images[end].width) * images[end].height;
+        writeImages(images, roles, plan, begin, end, cache);
     }
-}
-
-TexturePages buildTexturePages(std::vector<TextureImage>& images, const std::vector<TextureUse>& uses)
-{
-    Groups groups;
-    for (uint32_t i = 0; i < images.size(); ++i)
-        groups[{images[i].width, images[i].height, images[i].srgb}].push_back(i);
-    limitGroups(groups);
-
-    struct Place
-    {
-        uint32_t page = 0;
-        uint32_t layer = 0;
-    };
-    TexturePages result;
-    std::vector<Place> places(images.size());
-    for (const auto& [key, members] : groups)
-    {
-        for (uint32_t layer = 0; layer < members.size(); ++layer)
-        {
-            const TextureImage& image = images[members[layer]];
-            places[members[layer]] = {uint32_t(result.pages.size()), layer};
-            result.resized += image.width != key.width || image.height != key.height;
-        }
-        result.pages.push_back(emptyPage(key, uint32_t(members.size())));
-    }
-    parallelFor(images.size(), [&](size_t i) { fillLayer(result.pages[places[i].page], places[i].layer, images[i]); });
+    TexturePages out{std::move(plan.pages), {}, plan.halved};
     for (const TextureUse& use : uses)
-        result.refs.push_back({places[use.image].page, places[use.image].layer, use.sampling, use.u_row, use.v_row});
-    return result;
+        out.refs.push_back(reference(use, images[use.image], plan.places[use.image], out.pages[plan.places[use.image].page]));
+    return out;
 }

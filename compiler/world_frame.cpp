@@ -211,7 +211,8 @@ Status moveIntoFrame(ImportedScene& imported, const WorldFrame& frame)
     for (CameraView& view : scene.cameras)
     {
         view.position = moved(view.position);
-        view.orthographic_height = scaled(view.orthographic_height, scale);
+        for (float* distance : {&view.orthographic_height, &view.near_plane, &view.far_plane})
+            *distance = scaled(*distance, scale);
         if (!isFinite(toFloat(view.position)))
             return Error{ExitCode::kInvalid, fmt::format("camera \"{}\" is beyond the range of numbers", view.name)};
     }

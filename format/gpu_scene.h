@@ -4,6 +4,7 @@
 #ifndef FORMAT_GPU_SCENE_H
 #define FORMAT_GPU_SCENE_H
 #include "format/gpu_types.h"
+#include "format/material_fields.h"
 
 GPU_NAMESPACE_BEGIN
 
@@ -63,7 +64,7 @@ struct VertexAttributes
 {
     uint normal;  // octahedral, 2 x 16-bit snorm (packSnorm2x16), unit length, world space
     uint tangent; // octahedral, x: bits 0..15 snorm16, y: bits 17..31 (snorm15 << 17), bit 16: set = bitangent sign -1;
-                  // 0x00000000 only together with no normal map
+                  // 0x00000000 only where no normal map or anisotropy needs one
     vec2 uv0;     // TEXCOORD_0, glTF convention (v down)
     vec2 uv1;     // TEXCOORD_1
     uvec2 color;  // COLOR_0, linear RGBA as 4 halfs (packHalf2x16(rg), packHalf2x16(ba)); 1 where absent
@@ -79,57 +80,58 @@ GPU_CONST uint kMaterialDoubleSided = 4u; // emits on both sides; reflection is 
 GPU_CONST uint kMaterialUnlit = 8u;       // KHR_materials_unlit: shows base_color to the eye, takes no part in light transport
 GPU_CONST uint kMaterialThin = 16u;       // transmission > 0 without a volume: thin-walled, no refraction
 
-struct Material // glTF 2.0 metallic-roughness and the KHR_materials_* extensions the renderer honours
+GPU_CONST uint kEncodingLinear = 0u; // of textures that materials name
+GPU_CONST uint kEncodingSrgb = 1u;
+GPU_CONST uint kEncodingNormal = 2u; // unit vectors, linear
+GPU_CONST uint kRed = 1u, kGreen = 2u, kBlue = 4u, kAlpha = 8u;
+GPU_CONST float kUnbounded = 3.402823466e38f;
+
+struct Material // glTF 2.0 metallic-roughness and KHR_materials_*; meanings in material_fields.h
 {
-    vec3 base_color;
-    float alpha;        // baseColorFactor.a
-    vec3 emission;      // W/(m^2 sr): emissiveFactor x emissiveStrength, before its texture
-    float alpha_cutoff;
-    float metallic;
-    float roughness;    // perceptual; alpha_ggx = roughness^2
-    float normal_scale;
-    float transmission;
-    float ior;
-    float specular;     // KHR_materials_specular specularFactor
-    vec3 specular_color;
-    vec3 absorption;    // 1/m: -ln(attenuationColor) / attenuationDistance
-    uint flags;
-    uint base_color_texture; // the seven: index into TextureRefs or kNone
-    uint metallic_roughness_texture; // G roughness, B metallic
-    uint normal_texture;
-    uint emissive_texture;
-    uint transmission_texture;   // R
-    uint specular_texture;       // A
-    uint specular_color_texture; // sRGB
+#define NUMBER(word, type, name, default_, least, most, meaning) type name;
+#define FLAGS(word, name, meaning) uint name;
+#define TEXTURE(word, name, encoding, channels, feature, meaning) uint name;
+    MATERIAL_FIELDS(NUMBER, FLAGS, TEXTURE)
+#undef NUMBER
+#undef FLAGS
+#undef TEXTURE
 };
-GPU_SIZE(Material, 112);
-GPU_OFFSET(Material, emission, 16);
-GPU_OFFSET(Material, metallic, 32);
-GPU_OFFSET(Material, ior, 48);
-GPU_OFFSET(Material, absorption, 68);
-GPU_OFFSET(Material, flags, 80);
-GPU_OFFSET(Material, emissive_texture, 96);
+GPU_CONST uint kMaterialRows = MATERIAL_WORDS / 4u; // of four words: what a kernel fetches at once
+GPU_SIZE(Material, 4 * MATERIAL_WORDS);
+#define NUMBER(word, type, name, default_, least, most, meaning) GPU_OFFSET(Material, name, 4 * word);
+#define FLAGS(word, name, meaning) GPU_OFFSET(Material, name, 4 * word);
+#define TEXTURE(word, name, encoding, channels, feature, meaning) GPU_OFFSET(Material, name, 4 * word);
+#ifdef __cplusplus
+MATERIAL_FIELDS(NUMBER, FLAGS, TEXTURE)
+#endif
+#undef NUMBER
+#undef FLAGS
+#undef TEXTURE
 
 GPU_CONST float kSmoothRoughness = 0.03; // below it a specular lobe is a perfect mirror or a perfect refraction
 
-GPU_CONST uint kTexturePageCount = 16u; // array textures a scene may use: one per size and encoding
+GPU_CONST uint kTexturePageCount = 16u; // array textures a scene may use: one per size and encoding, or many sizes in tiles
 
-// TextureRef.sampling: bits 0-1 wrap u, bits 2-3 wrap v, bit 4 nearest, bit 5 use TEXCOORD_1
+// TextureRef.sampling: bits 0-1 wrap u, bits 2-3 wrap v, bit 4 nearest, bit 5 use TEXCOORD_1, bit 6 tile, bit 7 x and y only
 GPU_CONST uint kWrapRepeat = 0u;
 GPU_CONST uint kWrapClamp = 1u;
 GPU_CONST uint kWrapMirror = 2u;
 GPU_CONST uint kSampleNearest = 16u;
 GPU_CONST uint kSampleUv1 = 32u;
+GPU_CONST uint kSampleTile = 64u;     // a tile of a tiled page (texture_tile.h), else a whole layer
+GPU_CONST uint kSampleNormalXy = 128u; // a unit vector of which only x and y are stored; z >= 0
 
 struct TextureRef // one use of a texture: which layer of which page, and how
 {
     uint page;     // < kTexturePageCount
     uint layer;
     uint sampling;
+    uint origin;   // of the tile, texels: x in bits 0..15, y in bits 16..31; multiples of 4; 0 for a whole layer
+    uint size;     // of level 0, texels: width in bits 0..15, height in bits 16..31
     vec3 u_row;    // u' = dot(u_row, vec3(u, v, 1)): KHR_texture_transform
     vec3 v_row;
 };
-GPU_SIZE(TextureRef, 36);
+GPU_SIZE(TextureRef, 44);
 
 // ---- Lights --------------------------------------------------------------------------------------------------------
 
@@ -165,8 +167,8 @@ struct AliasEntry // Walker/Vose: pick i uniformly, keep it if a second uniform 
 };
 GPU_SIZE(AliasEntry, 8);
 
-// The environment is an equirectangular map: direction (x,y,z) -> u = 0.5 + atan2(z, x) / 2pi, v = acos(y) / pi,
-// row 0 at +Y. Radiance is bilinearly filtered (u repeats, v clamps). Importance is a coarser grid over the same (u,v):
+// The environment is an equirectangular map: direction (x,y,z) -> u = 0.5 + (atan2(z, x) + rotation) / 2pi, v = acos(y) / pi,
+// row 0 at +Y; rotation is META's, about +Y as a node's would be. Radiance is bilinearly filtered (u repeats, v clamps). Importance is a coarser grid over the same (u,v):
 struct EnvironmentTexel
 {
     float threshold;   // alias table over the texels, row-major
@@ -192,12 +194,19 @@ GPU_CONST uint kFeatureEnvironment = 32u;
 GPU_CONST uint kFeatureNormalMaps = 64u;
 GPU_CONST uint kFeatureMetallicRoughnessMaps = 128u;
 GPU_CONST uint kFeatureEmissiveMaps = 256u;
-GPU_CONST uint kFeatureRareMaps = 512u;       // transmission, specular, specular colour
+GPU_CONST uint kFeatureRareMaps = 512u;       // all others
 GPU_CONST uint kFeatureMetal = 1024u;         // materials with metallic > 0
 GPU_CONST uint kFeatureSpecular = 2048u;      // materials with any specular reflection or transmission
 GPU_CONST uint kFeatureBaseColorMaps = 4096u;
 GPU_CONST uint kFeatureSecondUv = 8192u;      // textures that use TEXCOORD_1
 GPU_CONST uint kFeatureVertexColors = 16384u; // vertices that are not white
+GPU_CONST uint kFeatureClearcoat = 32768u;
+GPU_CONST uint kFeatureSheen = 65536u;
+GPU_CONST uint kFeatureAnisotropy = 131072u;
+GPU_CONST uint kFeatureIridescence = 262144u;
+GPU_CONST uint kFeatureDispersion = 524288u;
+GPU_CONST uint kFeatureDiffuseTransmission = 1048576u;
+GPU_CONST uint kFeatureTiles = 2097152u; // textures in tiled pages
 
 struct SceneInfo // uniform block: what every kernel may need to know of the scene
 {
@@ -208,8 +217,9 @@ struct SceneInfo // uniform block: what every kernel may need to know of the sce
     uvec2 environment_importance_size; // texels; 0 without environment
     uint caustic_target_count;
     uint triangle_count;
+    float environment_turn; // by how much of a whole turn the environment is rotated about +Y, -0.5 to 0.5
 };
-GPU_SIZE(SceneInfo, 48);
+GPU_SIZE(SceneInfo, 52);
 
 // ---- Descriptor set 0: the scene, the same for every kernel --------------------------------------------------------
 

@@ -31,22 +31,22 @@ Result<MappedFile> MappedFile::open(const std::filesystem::path& path)
     // O_NONBLOCK: a named pipe must be refused, not waited for.
     const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
     if (fd < 0)
-        return ioError("open the package");
+        return ioError("open the file");
     const Descriptor descriptor{fd};
 
     struct stat info = {};
     if (fstat(fd, &info) != 0)
-        return ioError("read the package's size");
+        return ioError("read the file's size");
     if (S_ISDIR(info.st_mode))
-        return Error{ExitCode::kIo, "this is a directory; name the .lumi file itself"};
+        return Error{ExitCode::kIo, "this is a directory; name the file itself"};
     if (!S_ISREG(info.st_mode))
-        return Error{ExitCode::kIo, "this is not a regular file; packages are mapped, so copy it to one first"};
+        return Error{ExitCode::kIo, "this is not a regular file; it is read by mapping, so copy it to one first"};
     if (info.st_size == 0)
-        return Error{ExitCode::kInvalid, "the file is empty (0 bytes); compile or copy the package again"};
+        return Error{ExitCode::kInvalid, "the file is empty (0 bytes); make or copy it again"};
 
     void* address = mmap(nullptr, size_t(info.st_size), PROT_READ, MAP_PRIVATE, fd, 0);
     if (address == MAP_FAILED)
-        return ioError("map the package");
+        return ioError("map the file");
     MappedFile file;
     file.bytes_ = {static_cast<const std::byte*>(address), size_t(info.st_size)};
     return file;

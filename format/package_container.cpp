@@ -198,7 +198,7 @@ Status decompress(const ChunkEntry& entry, std::span<const std::byte> stored, st
     return Success{};
 }
 
-Status loadChunks(std::span<const std::byte> file, Container& container)
+Status loadChunks(std::span<const std::byte> file, Unpack unpack, Container& container)
 {
     container.chunks.resize(container.table.size());
     container.storage.resize(container.table.size());
@@ -206,7 +206,7 @@ Status loadChunks(std::span<const std::byte> file, Container& container)
     for (size_t i = 0; i < container.table.size(); ++i)
     {
         tasks.emplace_back(
-            [&container, file, i]() -> Status
+            [&container, file, unpack, i]() -> Status
             {
                 const ChunkEntry& entry = container.table[i];
                 const auto stored = file.subspan(entry.offset, entry.stored_bytes);
@@ -215,7 +215,7 @@ Status loadChunks(std::span<const std::byte> file, Container& container)
                                    "again",
                                    chunkName(entry.id), entry.index);
                 container.chunks[i] = stored;
-                if (entry.codec == Codec::kNone || !isKnown(entry.id))
+                if (entry.codec == Codec::kNone || !isKnown(entry.id) || (unpack == Unpack::kMeta && entry.id != kMetaChunk))
                     return Success{};
                 Status status = decompress(entry, stored, container.storage[i]);
                 container.chunks[i] = {container.storage[i].get(), entry.raw_bytes};
@@ -236,7 +236,7 @@ std::span<const std::byte> Container::find(uint32_t id, uint32_t index) const
     return {};
 }
 
-Result<Container> readContainer(std::span<const std::byte> file)
+Result<Container> readContainer(std::span<const std::byte> file, Unpack unpack)
 {
     Result<Header> header = readHeader(file);
     if (!header)
@@ -261,7 +261,7 @@ Result<Container> readContainer(std::span<const std::byte> file)
     }
     if (Status status = verifyPlacement(file, *header, container.table); !status)
         return status.error();
-    if (Status status = loadChunks(file, container); !status)
+    if (Status status = loadChunks(file, unpack, container); !status)
         return status.error();
     return container;
 }

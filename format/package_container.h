@@ -20,6 +20,12 @@ struct Container
     std::span<const std::byte> find(uint32_t id, uint32_t index = 0) const;
 };
 
+enum class Unpack
+{
+    kAll,
+    kMeta, // chunks other than META stay compressed, for readers that do without them
+};
+
 /// Verifies the shell of `file` (16-byte aligned; chunks of the result refer into it) and every chunk's hash.
-Result<Container> readContainer(std::span<const std::byte> file);
+Result<Container> readContainer(std::span<const std::byte> file, Unpack unpack = Unpack::kAll);
 } // namespace package

@@ -8,7 +8,7 @@
 namespace package
 {
 inline constexpr std::array<uint8_t, 12> kMagic{0xAB, 'L', 'U', 'M', 'I', ' ', '1', 0xBB, '\r', '\n', 0x1A, '\n'};
-inline constexpr uint16_t kVersionMajor = 1; // readers refuse another
+inline constexpr uint16_t kVersionMajor = 2; // readers refuse another
 inline constexpr uint16_t kVersionMinor = 0; // readers ignore a higher one
 inline constexpr uint32_t kBulkAlignment = 4096; // of uncompressed bulk chunks: mapped pages go to the GPU as they lie
 inline constexpr uint32_t kSmallAlignment = 16;  // of META and compressed chunks

@@ -1,6 +1,7 @@
 #include "format/package_verify.h"
 
 #include "format/parallel.h"
+#include "format/texture_encoding.h"
 
 #include <limits>
 
@@ -50,10 +51,10 @@ Status readMeta(const Container& container, const lumicut::fb::Meta*& out)
 
 uint64_t pageBytes(const lumicut::fb::TexturePage& page)
 {
-    uint64_t texels = 0;
+    uint64_t bytes = 0;
     for (uint32_t level = 0; level < page.levels(); ++level)
-        texels += uint64_t(std::max(1u, page.width() >> level)) * std::max(1u, page.height() >> level);
-    return texels * page.layers() * 4;
+        bytes += levelBytes(page.encoding(), std::max(1u, page.width() >> level), std::max(1u, page.height() >> level));
+    return bytes * page.layers();
 }
 
 Status verifyPageSize(const lumicut::fb::TexturePage& page, uint32_t index)
@@ -72,6 +73,8 @@ Status verifyPageSize(const lumicut::fb::TexturePage& page, uint32_t index)
     if (page.levels() < 1 || page.levels() > full_chain)
         return invalid("chunk META: texture page {} has {} mip levels, allowed are 1 to {}", index, page.levels(),
                        full_chain);
+    if (page.tiled() && page.levels() != 1)
+        return invalid("chunk META: texture page {} is tiled and has {} mip levels, allowed is 1", index, page.levels());
     return Success{};
 }
 

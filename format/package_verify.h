@@ -79,6 +79,10 @@ inline bool isWithin(float value, float low, float high)
 {
     return value >= low && value <= high;
 } // false for NaN
+inline bool isWithin(const gpu::vec3& v, float low, float high)
+{
+    return isWithin(v.x, low, high) && isWithin(v.y, low, high) && isWithin(v.z, low, high);
+}
 inline float dot(const gpu::vec3& a, const gpu::vec3& b)
 {
     return a.x * b.x + a.y * b.y + a.z * b.z;

@@ -3,6 +3,7 @@
 #include <string>
 #include <utility>
 #include <variant>
+#include <vector>
 
 /// Process exit codes, the same for every program of the project.
 enum class ExitCode
@@ -21,8 +22,9 @@ struct Error
     ExitCode code = ExitCode::kInvalid;
     std::string message;
     std::string file = {}; // what the sentence is about where that is not the program's input; empty: the input
+    std::vector<std::string> details = {}; // sentences that come before: what led to it
 
-    Error about(std::string path) const { return {code, message, std::move(path)}; }
+    Error about(std::string path) const { return {code, message, std::move(path), details}; }
 };
 
 template <typename T>

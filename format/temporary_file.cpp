@@ -4,7 +4,68 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <array>
+#include <atomic>
 #include <cerrno>
+#include <climits>
+#include <csignal>
+#include <cstring>
+
+namespace
+{
+/// A file that a signal is to remove. A handler may neither lock nor allocate: fixed places, taken and given back by
+/// one atomic step.
+struct OpenFile
+{
+    enum State : int { kFree, kTaken, kOpen };
+    std::atomic<int> state{kFree};
+    std::array<char, PATH_MAX> path{};
+};
+std::array<OpenFile, 64> open_files;
+
+/// Where all places are taken the file is left to chance: a signal then leaves it behind.
+void rememberOpen(const char* path)
+{
+    const size_t bytes = std::strlen(path) + 1;
+    for (OpenFile& file : open_files)
+    {
+        int expected = OpenFile::kFree;
+        if (bytes > file.path.size() || !file.state.compare_exchange_strong(expected, OpenFile::kTaken))
+            continue;
+        std::memcpy(file.path.data(), path, bytes);
+        file.state = OpenFile::kOpen;
+        return;
+    }
+}
+
+void forgetOpen(const char* path)
+{
+    for (OpenFile& file : open_files)
+        if (file.state == OpenFile::kOpen && std::strcmp(file.path.data(), path) == 0)
+            file.state = OpenFile::kFree;
+}
+
+void removeOpenFiles(int signal)
+{
+    for (OpenFile& file : open_files)
+        if (file.state == OpenFile::kOpen)
+            unlink(file.path.data());
+    raise(signal); // the handler is in force once only, so that this one ends the program
+}
+} // namespace
+
+void removeTemporaryFilesOnSignals()
+{
+    struct sigaction action = {};
+    action.sa_handler = removeOpenFiles;
+    action.sa_flags = int(SA_RESETHAND | SA_NODEFER);
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP})
+    {
+        struct sigaction before = {};
+        if (sigaction(signal, nullptr, &before) == 0 && before.sa_handler != SIG_IGN) // nohup and the like ask for that
+            sigaction(signal, &action, nullptr);
+    }
+}
 
 TemporaryFile::TemporaryFile(const std::filesystem::path& target) : target_(target)
 {
@@ -16,6 +77,8 @@ TemporaryFile::TemporaryFile(const std::filesystem::path& target) : target_(targ
         if (descriptor_ < 0 && errno != EEXIST)
             break;
     }
+    if (descriptor_ >= 0)
+        rememberOpen(path_.c_str());
 }
 
 TemporaryFile::~TemporaryFile()
@@ -25,6 +88,7 @@ TemporaryFile::~TemporaryFile()
     close(descriptor_);
     if (!committed_)
         unlink(path_.c_str());
+    forgetOpen(path_.c_str());
 }
 
 bool TemporaryFile::append(std::span<const std::byte> bytes)
@@ -42,11 +106,14 @@ bool TemporaryFile::append(std::span<const std::byte> bytes)
     return true;
 }
 
-bool TemporaryFile::commit()
+bool TemporaryFile::commit(Durability durability)
 {
-    if (fsync(descriptor_) != 0 || rename(path_.c_str(), target_.c_str()) != 0)
+    const bool on_disk = durability == Durability::kOnDisk;
+    if ((on_disk && fsync(descriptor_) != 0) || rename(path_.c_str(), target_.c_str()) != 0)
         return false;
     committed_ = true;
+    if (!on_disk)
+        return true;
     // The name itself survives a power cut only once its folder is on disk; some file systems refuse, harmlessly.
     const std::filesystem::path folder = target_.has_parent_path() ? target_.parent_path() : ".";
     const int folder_descriptor = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);

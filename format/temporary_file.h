@@ -5,6 +5,12 @@
 #include <filesystem>
 #include <span>
 
+enum class Durability
+{
+    kOnDisk,        // whole under its name, or not there, even after a power cut
+    kUntilPowerCut, // after one it may hold anything: for files that can be checked and made again
+};
+
 /// Written beside `target` and renamed to it by commit(); removed again where that never comes. errno tells why a call
 /// failed.
 class TemporaryFile
@@ -21,7 +27,7 @@ public:
     bool append(std::span<const std::byte> bytes);
 
     /// Puts everything on disk, then the file under its name, replacing what was there.
-    bool commit();
+    bool commit(Durability durability = Durability::kOnDisk);
 
 private:
     std::filesystem::path target_;
@@ -30,3 +36,6 @@ private:
     uint64_t position_ = 0;
     bool committed_ = false;
 };
+
+/// From here on SIGINT, SIGTERM and SIGHUP remove all temporary files that are open, then end the program as ever.
+void removeTemporaryFilesOnSignals();

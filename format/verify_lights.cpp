@@ -118,6 +118,9 @@ Status verifyEnvironment(const Contents& contents)
     const lumicut::fb::Vec3* average = environment->average_radiance();
     if (!average || !isNonNegative({average->x(), average->y(), average->z()}))
         return invalid("chunk META: the environment's average radiance is missing, negative or not finite");
+    constexpr float kHalfTurn = 3.1415928f; // radians: pi, rounded up
+    if (!isWithin(environment->rotation(), -kHalfTurn, kHalfTurn))
+        return invalid("chunk META: the environment is turned by {} radians, allowed is -pi to pi", environment->rotation());
     if (contents.environment_map.size() != size_t(environment->width()) * environment->height())
         return invalid("chunk ENVR: {} texels, META says {} x {}", contents.environment_map.size(),
                        environment->width(), environment->height());

@@ -31,6 +31,13 @@ Status verifyCamera(const lumicut::fb::Camera& camera, uint32_t index)
         return invalid("chunk META: camera {} has a field of view of {} radians and an orthographic height of {}; one "
                        "must be 0, the other positive and a field of view below pi",
                        index, fov, height);
+    const float near_plane = camera.near_plane();
+    const float far_plane = camera.far_plane();
+    if (!(near_plane >= 0) || !std::isfinite(near_plane) || !std::isfinite(far_plane) ||
+        !(far_plane == 0 || far_plane > near_plane))
+        return invalid("chunk META: camera {} has its near plane at {} and its far plane at {}; allowed are 0 or more "
+                       "for the first, and more than that or 0, for none, for the second",
+                       index, near_plane, far_plane);
     return Success{};
 }
 

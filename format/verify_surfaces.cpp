@@ -1,5 +1,9 @@
 // Triangles, vertices, materials and texture references.
+#include "format/material.h"
 #include "format/package_verify.h"
+#include "format/texture_tile.h"
+
+#include <bit>
 
 namespace package
 {
@@ -10,27 +14,46 @@ bool isFiniteHalf(uint32_t bits)
     return (bits & 0x7c00u) != 0x7c00u;
 }
 
-/// Factors are as glTF bounds them; what it leaves open need only be finite.
+/// A whole layer of a plain page, or a tile with all its levels inside a tiled one.
+bool liesInPage(const gpu::TextureRef& t, const lumicut::fb::TexturePage& page)
+{
+    const uint32_t x = t.origin & 0xffff, y = t.origin >> 16, width = t.size & 0xffff, height = t.size >> 16;
+    if (page.tiled() != ((t.sampling & gpu::kSampleTile) != 0))
+        return false;
+    if (!page.tiled())
+        return t.origin == 0 && width == page.width() && height == page.height();
+    if (x % 4 != 0 || y % 4 != 0 || width == 0 || height == 0)
+        return false;
+    const auto levels = uint32_t(std::bit_width(std::max(width, height)));
+    for (uint32_t level = 0; level < levels; ++level)
+        if (gpu::tileLevelX(x, width, level) + gpu::tileSide(gpu::levelSide(width, level)) > page.width() ||
+            gpu::tileLevelY(y, height, level) + gpu::tileSide(gpu::levelSide(height, level)) > page.height())
+            return false;
+    return true;
+}
+
+std::string range(float least, float most)
+{
+    if (most < gpu::kUnbounded)
+        return fmt::format("{} to {}", least, most);
+    return least == -gpu::kUnbounded ? "the finite numbers" : fmt::format("{} to infinity", least);
+}
+
+/// Every component in its range, and finite.
 Status verifyFactors(const gpu::Material& m, size_t index)
 {
-    const auto outside = [index](const char* what, const char* range)
-    { return invalid("chunk MATL: material {} has {} outside {}", index, what, range); };
-
-    for (const float c : {m.base_color.x, m.base_color.y, m.base_color.z, m.alpha})
-    {
-        if (!isWithin(c, 0, 1))
-            return outside("a base colour or alpha", "0 to 1");
-    }
-    if (!isWithin(m.metallic, 0, 1) || !isWithin(m.roughness, 0, 1))
-        return outside("metallic or roughness", "0 to 1");
-    if (!isWithin(m.transmission, 0, 1) || !isWithin(m.specular, 0, 1))
-        return outside("transmission or specular", "0 to 1");
-    if (!std::isfinite(m.ior) || (m.ior != 0 && m.ior < 1))
-        return outside("an index of refraction", "1 to infinity (or 0)");
-    if (!isNonNegative(m.emission) || !isNonNegative(m.specular_color) || !isNonNegative(m.absorption))
-        return outside("an emission, specular colour or absorption", "0 to infinity");
-    if (!std::isfinite(m.alpha_cutoff) || m.alpha_cutoff < 0 || !std::isfinite(m.normal_scale))
-        return outside("an alpha cutoff or normal scale", "the finite numbers");
+    using gpu::kUnbounded;
+#define NUMBER(word, type, name, default_, least, most, meaning) \
+    if (!isWithin(m.name, least, most)) \
+        return invalid("chunk MATL: material {} has {} outside {}", index, #name, range(least, most));
+#define FLAGS(word, name, meaning)
+#define TEXTURE(word, name, encoding, channels, feature, meaning)
+    MATERIAL_FIELDS(NUMBER, FLAGS, TEXTURE)
+#undef NUMBER
+#undef FLAGS
+#undef TEXTURE
+    if (m.ior != 0 && m.ior < 1)
+        return invalid("chunk MATL: material {} has an index of refraction between 0 and 1", index);
     return Success{};
 }
 } // namespace
@@ -82,12 +105,10 @@ Status verifyMaterials(const Contents& contents)
             return factors;
         if ((m.flags & ~kAllFlags) != 0 || (m.flags & kAlphaModes) == kAlphaModes)
             return invalid("chunk MATL: material {} has unknown or contradictory flags ({:#x})", i, m.flags);
-        for (const uint32_t texture :
-             {m.base_color_texture, m.metallic_roughness_texture, m.normal_texture, m.emissive_texture,
-              m.transmission_texture, m.specular_texture, m.specular_color_texture})
+        for (const MaterialTexture& texture : kMaterialTextures)
         {
-            if (texture != gpu::kNone && texture >= contents.texture_refs.size())
-                return invalid("chunk MATL: material {} refers to texture {}, chunk TREF has {}", i, texture,
+            if (const uint32_t ref = m.*texture.index; ref != gpu::kNone && ref >= contents.texture_refs.size())
+                return invalid("chunk MATL: material {} refers to texture {} as its {}, chunk TREF has {}", i, ref, texture.name,
                                contents.texture_refs.size());
         }
     }
@@ -106,8 +127,10 @@ Status verifyTextureRefs(const Contents& contents)
             return invalid("chunk TREF: texture {} refers to layer {} of page {}, which has {}", i, t.layer, t.page,
                            pages.Get(t.page)->layers());
         if ((t.sampling & 3) > gpu::kWrapMirror || (t.sampling >> 2 & 3) > gpu::kWrapMirror ||
-            t.sampling >= 2 * gpu::kSampleUv1)
+            t.sampling >= 2 * gpu::kSampleNormalXy)
             return invalid("chunk TREF: texture {} has unknown sampling bits ({:#x})", i, t.sampling);
+        if (!liesInPage(t, *pages.Get(t.page)))
+            return invalid("chunk TREF: texture {} is not where page {} holds textures", i, t.page);
         if (!isFinite(t.u_row) || !isFinite(t.v_row))
             return invalid("chunk TREF: texture {} has a coordinate transform that is not finite", i);
     }

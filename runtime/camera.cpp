@@ -26,7 +26,9 @@ std::vector<Camera> packageCameras(const package::Package& package)
                            .forward = vec(camera->forward()),
                            .up = vec(camera->up()),
                            .vertical_fov = camera->vertical_fov(),
-                           .orthographic_height = camera->orthographic_height()});
+                           .orthographic_height = camera->orthographic_height(),
+                           .near_plane = camera->near_plane(),
+                           .far_plane = camera->far_plane()});
     return cameras;
 }
 
@@ -67,6 +69,8 @@ gpu::CameraParams cameraParams(const Camera& camera, uint32_t width, uint32_t he
             .width = width,
             .height = height,
             .orthographic = orthographic,
+            .near_plane = camera.near_plane,
+            .far_plane = camera.far_plane,
             .sample_count = 1,
             .first_sample = 0,
             .seed = 0};

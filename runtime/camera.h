@@ -14,6 +14,8 @@ struct Camera
     gpu::vec3 up{0, 1, 0};       // unit, orthogonal to forward
     float vertical_fov = 0.8f;   // radians; 0: orthographic
     float orthographic_height = 0; // metres
+    float near_plane = 0;          // metres along forward, before which nothing is seen
+    float far_plane = 0;           // metres along forward, behind which nothing is seen; 0: there is none
 };
 
 std::vector<Camera> packageCameras(const package::Package& package);

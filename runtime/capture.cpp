@@ -1,6 +1,6 @@
 #include "runtime/capture.h"
 
-#include "tools/image/write_image.h"
+#include "image/write_image.h"
 
 Status checkPicturePath(const std::filesystem::path& path)
 {

@@ -89,6 +89,7 @@ private:
     std::optional<GuideStage> guide_; // where it helps
     PhotonStage photons_, caustic_photons_;
     PhotonTreeStage photon_tree_, caustic_tree_;
+    LegsStage legs_;
     CutStage cut_;
     SamplesStage samples_;
     GatherStage gather_;

@@ -1,5 +1,5 @@
 // lumicut-play: the command line of the player.
-#include <CLI/CLI.hpp> // before our check(), whose name its options use too
+#include "tools/cli/documentation.h" // before our check(), whose name its options use too
 
 #include "runtime/capture.h"
 #include "runtime/headless.h"
@@ -71,6 +71,7 @@ int main(int argc, char** argv)
     app.set_version_flag("--version", "lumicut-play " LUMICUT_VERSION);
     app.footer("Settings (--set name=value):\n" + describeKnobs() +
                "Exit codes: 0 ok, 1 usage, 2 I/O, 3 invalid package, 4 no suitable device or out of memory, 5 unsupported.");
+    addDocumentation(app);
     PlayerOptions options;
     std::string size = "1280x720", mode = "gi", view;
     bool list_devices = false;

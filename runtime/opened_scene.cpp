@@ -1,7 +1,7 @@
 #include "runtime/opened_scene.h"
 
 #include "runtime/capture.h"
-#include "tools/image/read_exr.h"
+#include "image/read_exr.h"
 
 namespace
 {

@@ -1,10 +1,13 @@
 #include "runtime/scene_gpu.h"
 
+#include "format/material.h"
+#include "runtime/texture_pages.h"
 #include "shaders/gather/harmonics.h"
 #include "shaders/view_scale/view_scale.h"
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace
 {
@@ -24,28 +27,35 @@ gpu::SceneInfo sceneInfo(const package::Package& package)
         .environment_importance_size = {},
         .caustic_target_count = uint32_t(package.causticTargets().size()),
         .triangle_count = uint32_t(package.triangles().size()),
+        .environment_turn = 0,
     };
     if (!lights.empty() && lights.back().kind == gpu::kLightEnvironment)
     {
         info.environment_light = uint32_t(lights.size() - 1);
         info.environment_importance_size = {meta.environment()->importance_width(), meta.environment()->importance_height()};
+        info.environment_turn = meta.environment()->rotation() * float(0.5 / std::numbers::pi);
     }
     return info;
 }
 uint32_t materialFeatures(const gpu::Material& material)
 {
-    const auto if_used = [](uint32_t texture, uint32_t feature) { return texture != gpu::kNone ? feature : 0u; };
+    const gpu::vec3& sheen = material.sheen_color;
+    const bool has_sheen = sheen.x > 0 || sheen.y > 0 || sheen.z > 0;
     const bool dielectric_reflects = material.specular > 0 && material.metallic < 1;
-    return (material.transmission > 0 ? gpu::kFeatureTransmission : 0u) |
-           (material.metallic > 0 ? gpu::kFeatureMetal : 0u) |
-           (dielectric_reflects || material.metallic > 0 || material.transmission > 0 ? gpu::kFeatureSpecular : 0u) |
-           if_used(material.base_color_texture, gpu::kFeatureBaseColorMaps) |
-           if_used(material.normal_texture, gpu::kFeatureNormalMaps) |
-           if_used(material.metallic_roughness_texture, gpu::kFeatureMetallicRoughnessMaps) |
-           if_used(material.emissive_texture, gpu::kFeatureEmissiveMaps) |
-           if_used(material.transmission_texture, gpu::kFeatureRareMaps) |
-           if_used(material.specular_texture, gpu::kFeatureRareMaps) |
-           if_used(material.specular_color_texture, gpu::kFeatureRareMaps);
+    const bool is_specular = dielectric_reflects || material.metallic > 0 || material.transmission > 0 || material.clearcoat > 0 ||
+                             has_sheen || material.diffuse_transmission > 0;
+    uint32_t features = (material.transmission > 0 ? gpu::kFeatureTransmission : 0u) |
+                        (material.metallic > 0 ? gpu::kFeatureMetal : 0u) |
+                        (is_specular ? gpu::kFeatureSpecular : 0u) |
+                        (material.clearcoat > 0 ? gpu::kFeatureClearcoat : 0u) |
+                        (has_sheen ? gpu::kFeatureSheen : 0u) |
+                        (material.anisotropy > 0 ? gpu::kFeatureAnisotropy : 0u) |
+                        (material.iridescence > 0 ? gpu::kFeatureIridescence : 0u) |
+                        (material.dispersion > 0 && material.transmission > 0 ? gpu::kFeatureDispersion : 0u) |
+                        (material.diffuse_transmission > 0 ? gpu::kFeatureDiffuseTransmission : 0u);
+    for (const package::MaterialTexture& texture : package::kMaterialTextures)
+        features |= material.*texture.index != gpu::kNone ? texture.feature : 0u;
+    return features;
 }
 
 uint32_t sceneFeatures(const package::Package& package)
@@ -56,6 +66,8 @@ uint32_t sceneFeatures(const package::Package& package)
     if (std::ranges::any_of(package.textureRefs(),
                             [](const gpu::TextureRef& ref) { return (ref.sampling & gpu::kSampleUv1) != 0; }))
         features |= gpu::kFeatureSecondUv;
+    if (std::ranges::any_of(*package.meta().texture_pages(), [](const auto* page) { return page->tiled(); }))
+        features |= gpu::kFeatureTiles;
     if (std::ranges::any_of(package.vertexAttributes(),
                             [](const gpu::VertexAttributes& v) { return v.color.x != kWhite || v.color.y != kWhite; }))
         features |= gpu::kFeatureVertexColors;
@@ -144,24 +156,15 @@ void SceneGpu::setLight(Recorder& rec, uint32_t index, const gpu::Light& light)
 void SceneGpu::createImages(const package::Package& package)
 {
     constexpr std::array<uint32_t, 4> kWhite{~0u, ~0u, ~0u, ~0u};
-    const auto& pages = *package.meta().texture_pages();
+    const uint32_t page_count = package.meta().texture_pages()->size();
     for (uint32_t p = 0; p < gpu::kTexturePageCount; ++p)
     {
-        if (p >= pages.size())
+        if (p >= page_count)
         {
             pages_.push_back(device_.uploadImage("scene.no_page", {.array = true}, std::as_bytes(std::span(kWhite).first(1))));
             continue;
         }
-        const auto& page = *pages[p];
-        const bool srgb = page.encoding() == lumicut::fb::TextureEncoding::Rgba8Srgb;
-        pages_.push_back(device_.uploadImage(fmt::format("scene.page_{}", p),
-                                             {.format = srgb ? VK_FORMAT_R8G8B8A8_SRGB : VK_FORMAT_R8G8B8A8_UNORM,
-                                              .width = page.width(),
-                                              .height = page.height(),
-                                              .layers = page.layers(),
-                                              .levels = page.levels(),
-                                              .array = true},
-                                             package.texturePage(p)));
+        pages_.push_back(uploadTexturePage(device_, package, p));
     }
     if (const auto* environment = package.meta().environment())
         environment_ = device_.uploadImage("scene.environment",

@@ -1,6 +1,6 @@
 #include "runtime/statistics.h"
 
-#include "tools/image/write_image.h"
+#include "image/write_image.h"
 
 #include <algorithm>
 #include <map>

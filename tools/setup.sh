@@ -12,13 +12,14 @@ packages=(
     # package format
     flatbuffers-compiler libflatbuffers-dev libxxhash-dev libzstd-dev
     # compiler
-    libdraco-dev libembree-dev libopenmesh-dev libstb-dev libtinygltf-dev libwebp-dev nlohmann-json3-dev
+    libdraco-dev libembree-dev libmeshoptimizer-dev libopenmesh-dev libstb-dev libtinygltf-dev libwebp-dev nlohmann-json3-dev
+    zlib1g-dev
     # player
     libglfw3-dev libimgui-dev libvulkan-dev mesa-vulkan-drivers
     # tools, and what several programs share
     libarchive-dev libcli11-dev libfmt-dev libopenexr-dev libssl-dev
     # tests
-    clang-14 libclang-rt-14-dev libgtest-dev vulkan-validationlayers xauth xvfb zstd
+    clang-14 libclang-rt-14-dev libgtest-dev python3-jsonschema vulkan-validationlayers xauth xvfb zstd
 )
 
 if [[ ${1-} == --list ]]; then

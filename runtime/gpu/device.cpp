@@ -1,5 +1,6 @@
 #include "runtime/gpu/device.h"
 
+#include "format/block_texture.h"
 #include "format/gpu_scene.h"
 
 #include <algorithm>
@@ -44,7 +45,12 @@ Result<std::unique_ptr<Device>> Device::create(const Instance& instance, uint32_
     };
     VkPhysicalDeviceVulkan12Features f12{
         .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES, .pNext = &f13, .scalarBlockLayout = VK_TRUE};
-    const VkPhysicalDeviceFeatures2 features{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, .pNext = &f12};
+    VkPhysicalDeviceFeatures offered;
+    vkGetPhysicalDeviceFeatures(device->physical_, &offered);
+    device->samples_blocks_ = offered.textureCompressionBC == VK_TRUE && !device->isCpu();
+    const VkPhysicalDeviceFeatures2 features{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2,
+                                             .pNext = &f12,
+                                             .features = {.textureCompressionBC = offered.textureCompressionBC}};
     std::vector<const char*> extensions{VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME};
     if (present)
         extensions.push_back(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
@@ -425,9 +431,18 @@ void transition(VkCommandBuffer commands, VkImage image, VkImageLayout from, VkI
     vkCmdPipelineBarrier2(commands, &info);
 }
 
-uint64_t texelBytes(VkFormat format)
+/// Of one layer of one level: whole blocks, where the format has them.
+uint64_t levelBytes(VkFormat format, uint32_t width, uint32_t height)
 {
-    return format == VK_FORMAT_R32G32B32A32_SFLOAT ? 16 : 4;
+    switch (format)
+    {
+    case VK_FORMAT_BC4_UNORM_BLOCK: return 8 * blocks::countIn(width, height);
+    case VK_FORMAT_BC5_UNORM_BLOCK:
+    case VK_FORMAT_BC7_UNORM_BLOCK:
+    case VK_FORMAT_BC7_SRGB_BLOCK: return 16 * blocks::countIn(width, height);
+    case VK_FORMAT_R32G32B32A32_SFLOAT: return uint64_t(16) * width * height;
+    default: return uint64_t(4) * width * height;
+    }
 }
 } // namespace
 
@@ -444,7 +459,7 @@ Image Device::uploadImage(std::string_view name, const ImageShape& shape, std::s
         .arrayLayers = shape.layers,
         .samples = VK_SAMPLE_COUNT_1_BIT,
         .tiling = VK_IMAGE_TILING_OPTIMAL,
-        .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT,
+        .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT, // tests read back
     };
     vulkanCheck(vkCreateImage(device_, &info, nullptr, &image.image_));
     VkMemoryRequirements needs;
@@ -465,7 +480,7 @@ Image Device::uploadImage(std::string_view name, const ImageShape& shape, std::s
         copies.push_back({.bufferOffset = offset,
                           .imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, level, 0, shape.layers},
                           .imageExtent = {width, height, 1}});
-        offset += texelBytes(shape.format) * width * height * shape.layers;
+        offset += levelBytes(shape.format, width, height) * shape.layers;
     }
     check(offset == data.size(), "image '{}' needs {} bytes, not {}", name, offset, data.size());
     submitOnce([&](VkCommandBuffer commands)

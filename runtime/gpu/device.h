@@ -90,6 +90,8 @@ public:
     const VkPhysicalDeviceLimits& limits() const { return properties_.limits; }
     std::string name() const { return properties_.deviceName; }
     bool isCpu() const { return properties_.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU; }
+    /// Block-compressed images are sampled by hardware.
+    bool samplesBlocks() const { return samples_blocks_; }
     /// Milliseconds spent building pipelines so far.
     double pipelineMs() const { return pipeline_ms_; }
     uint64_t allocatedBytes() const { return allocated_bytes_; }
@@ -120,6 +122,7 @@ private:
     VkQueue queue_ = VK_NULL_HANDLE;
     uint32_t queue_family_ = 0;
     VkPhysicalDeviceProperties properties_{};
+    bool samples_blocks_ = false;
     VkPhysicalDeviceMemoryProperties memory_{};
     VkDescriptorSetLayout scene_set_layout_ = VK_NULL_HANDLE;
     VkCommandPool once_pool_ = VK_NULL_HANDLE;

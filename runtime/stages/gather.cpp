@@ -13,6 +13,8 @@ GatherStage::GatherStage(const Device& device, const SceneGpu& scene, uint32_t m
       hits_(device.texelArray<gpu::Hit>("gather.hits", uint64_t(max_samples) * max_rays_per_sample)),
       states_(device.array<gpu::GatherState>("gather.states", uint64_t(max_samples) * max_rays_per_sample)),
       gathered_(device.array<gpu::Gathered>("gather.gathered", uint64_t(max_samples) * max_rays_per_sample)),
+      directions_(device.array<uint32_t>("gather.directions", uint64_t(max_samples) * max_rays_per_sample)),
+      no_legs_(device.array<gpu::Leg>("gather.no_legs", gpu::kLegCount)),
       harmonics_(
           device.texelArray<gpu::SampleHarmonics>("gather.harmonics", scene.reflectsRoughly() ? max_samples : 1)),
       old_harmonics_(
@@ -21,15 +23,17 @@ GatherStage::GatherStage(const Device& device, const SceneGpu& scene, uint32_t m
 }
 
 void GatherStage::look(Recorder& rec, const RayStage& rays, const SamplesStage::Output& samples,
-                       const gpu::GatherParams& params, GuideStage* guide) const
+                       const gpu::GatherParams& params, const LegsStage* legs, GuideStage* guide) const
 {
-    rec.run(generate_, max_samples_ * params.ray_count, params,
+    rec.run(generate_, max_samples_ * gpu::kRaysGroupSize, params,
             {{"Size", samples.size},
              {"Samples", samples.samples},
              {"Queue", queue_.size},
              {"Rays", queue_.rays},
              {"States", states_},
-             {"KeptSize", samples.kept}});
+             {"KeptSize", samples.kept},
+             {"Legs", legs ? legs->legs() : no_legs_},
+             {"Directions", directions_}});
     rays.closest(rec, queue_, hits_, traceSeed(params.seed, 0, 0));
     if (guide)
         guide->mark(rec, queue_, max_samples_ * params.ray_count, hits_);
@@ -38,7 +42,7 @@ void GatherStage::look(Recorder& rec, const RayStage& rays, const SamplesStage::
 void GatherStage::look(Recorder& rec, const RayStage& rays, const SamplesStage::Output& samples, const Input& in,
                        GuideStage& guide) const
 {
-    look(rec, rays, samples, gpu::GatherParams{.ray_count = in.ray_count, .seed = in.seed}, &guide);
+    look(rec, rays, samples, gpu::GatherParams{.ray_count = in.ray_count, .seed = in.seed}, nullptr, &guide);
 }
 
 void GatherStage::record(Recorder& rec, const RayStage& rays, const SamplesStage::Output& samples,
@@ -46,7 +50,7 @@ void GatherStage::record(Recorder& rec, const RayStage& rays, const SamplesStage
                          GuideStage* guide) const
 {
     const gpu::GatherParams params = paramsOf(in);
-    look(rec, rays, samples, params, guide);
+    look(rec, rays, samples, params, in.legs, guide);
     follow(rec, rays, map, cut, params);
     rec.run(sum_, max_samples_ * gpu::kRaysGroupSize, params,
             {{"Size", samples.size},
@@ -64,9 +68,9 @@ void GatherStage::record(Recorder& rec, const RayStage& rays, const SamplesStage
     rec.run(project_, max_samples_ * gpu::kRaysGroupSize, params,
             {{"Size", samples.size},
              {"GatheredBlock", gathered_},
-             {"Samples", samples.samples},
              {"Harmonics", harmonics_},
-             {"KeptSize", samples.kept}});
+             {"KeptSize", samples.kept},
+             {"Directions", directions_}});
 }
 
 void GatherStage::recordPixels(Recorder& rec, const RayStage& rays, const PhotonTreeStage::Output& map,
@@ -103,7 +107,8 @@ gpu::GatherParams GatherStage::paramsOf(const Input& in) const
             .depth_limit = has_specular_ ? in.specular_depth : 0,
             .mode = uint32_t(in.mode),
             .photon_count = in.photon_count,
-            .radius = in.radius};
+            .radius = in.radius,
+            .leg_count = in.legs ? gpu::kLegCount : 0};
 }
 
 void GatherStage::follow(Recorder& rec, const RayStage& rays, const PhotonTreeStage::Output& map,

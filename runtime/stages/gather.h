@@ -3,6 +3,7 @@
 #pragma once
 #include "runtime/stages/cut.h"
 #include "runtime/stages/guide.h"
+#include "runtime/stages/legs.h"
 #include "runtime/stages/samples.h"
 #include "shaders/gather/gather.h"
 #include "shaders/gather/harmonics.h"
@@ -22,6 +23,7 @@ public:
         uint32_t photon_count;   // k, in CutMode::kKnn
         float radius;            // of density estimation at most, in CutMode::kKnn: of the distance from the viewer
         uint32_t seed;
+        const LegsStage* legs = nullptr; // that say where light comes from; null: rays go by the cosine alone
         bool by_direction = false; // whether harmonics() is wanted; only in scenes with rough reflection
     };
     /// Only tells `guide` where the samples' rays end.
@@ -54,7 +56,7 @@ public:
 
 private:
     void look(Recorder& rec, const RayStage& rays, const SamplesStage::Output& samples, const gpu::GatherParams& params,
-              GuideStage* guide) const;
+              const LegsStage* legs, GuideStage* guide) const;
 
     static constexpr uint32_t kMostPixelRays = 256, kMostPasses = 8;
 
@@ -67,5 +69,5 @@ private:
     bool has_specular_;
     Kernel generate_, generate_pixels_, link_, link_knn_, sum_, add_, carry_, project_;
     RayQueue queue_, next_queue_;
-    Buffer hits_, states_, gathered_, harmonics_, old_harmonics_;
+    Buffer hits_, states_, gathered_, directions_, no_legs_, harmonics_, old_harmonics_;
 };

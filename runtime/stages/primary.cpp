@@ -35,7 +35,8 @@ PrimaryStage::Output PrimaryStage::record(Recorder& rec, const RayStage& rays, c
                                       .first_sample = in.camera.first_sample,
                                       .seed = in.camera.seed,
                                       .width = in.camera.orthographic ? width : 0,
-                                      .spread = in.camera.orthographic ? 0 : width};
+                                      .spread = in.camera.orthographic ? 0 : width,
+                                      .eye = in.camera.position};
         rays.closest(rec, *queue, hits_, traceSeed(in.camera.seed, in.camera.first_sample, depth));
         rays.reset(rec, next->size);
         rec.runIndirect(chain_, queue->size, params,

@@ -1,5 +1,7 @@
 #include "runtime/stages/reference_irradiance.h"
 
+#include "shaders/legs/legs.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -53,7 +55,9 @@ ReferenceIrradiance::ReferenceIrradiance(const Device& device, const SceneGpu& s
       pass_count_(std::max((ray_count + pass_rays_ - 1) / pass_rays_, 2u)), rays_(device, scene),
       reference_(device, scene, max_samples, pass_rays_), generate_(device.kernel("gather/generate")),
       queue_(device, "reference_irradiance.queue", max_samples * pass_rays_),
-      states_(device.array<gpu::GatherState>("reference_irradiance.states", uint64_t(max_samples) * pass_rays_))
+      states_(device.array<gpu::GatherState>("reference_irradiance.states", uint64_t(max_samples) * pass_rays_)),
+      directions_(device.array<uint32_t>("reference_irradiance.directions", uint64_t(max_samples) * pass_rays_)),
+      no_legs_(device.array<gpu::Leg>("reference_irradiance.no_legs", gpu::kLegCount))
 {
 }
 
@@ -71,13 +75,15 @@ std::vector<ReferenceIrradiance::Estimate> ReferenceIrradiance::measure(std::spa
     for (uint32_t pass = 0; pass < pass_count_; ++pass)
     {
         rec.begin(scene_.descriptorSet());
-        rec.run(generate_, path_count, gpu::GatherParams{.ray_count = pass_rays_, .seed = traceSeed(seed, pass, 0)},
+        rec.run(generate_, count * gpu::kRaysGroupSize, gpu::GatherParams{.ray_count = pass_rays_, .seed = traceSeed(seed, pass, 0)},
                 {{"Size", size},
                  {"Samples", points},
                  {"Queue", queue_.size},
                  {"Rays", queue_.rays},
                  {"States", states_},
-                 {"KeptSize", kept}});
+                 {"KeptSize", kept},
+                 {"Legs", no_legs_},
+                 {"Directions", directions_}});
         const Buffer& radiance = reference_.recordLeft(
             rec, rays_,
             {.rays = queue_, .path_count = path_count, .depth_limit = depth_limit, .seed = traceSeed(seed, pass, 1)});

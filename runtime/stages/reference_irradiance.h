@@ -31,5 +31,5 @@ private:
     ReferenceStage reference_;
     Kernel generate_;
     RayQueue queue_;
-    Buffer states_;
+    Buffer states_, directions_, no_legs_;
 };

@@ -2,8 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "shaders/caustics/caustics.h"
-#include "shaders/lib/bsdf.glsl"
-#include "shaders/lib/shading_point.glsl"
+#include "shaders/lib/path.glsl"
 
 // Caustics at every pixel: density estimation among the caustic photons around its shading point. One thread per pixel.
 
@@ -23,13 +22,21 @@ void main()
     if (pixel >= params.point_count || points[pixel].slot == kNone)
         return;
     ShadingPoint point = points[pixel];
-    Surface s = surfaceAt(point);
-    Bsdf b = bsdfAt(materialAt(s), s.front);
-    vec3 reflectance = point.throughput * diffuseReflectance(b, max(0.0, -dot(s.normal, point.direction)));
-    if (reflectance == vec3(0.0))
+    PathVertex v = vertexAt(point);
+    Surface s = v.surface;
+    float cosine = max(0.0, v.wo.z);
+    vec3 reflectance = point.throughput * diffuseReflectance(v.bsdf, cosine);
+    bool translucent = isTranslucent(v.bsdf);
+    if (reflectance == vec3(0.0) && !translucent)
         return;
     float radius = params.radius * viewDistance(s.position);
     DensityEstimate estimate = estimateIrradiance(s.position, s.geometric_normal, size.count, params.photon_count,
                                                   square(radius), square(radius) / 16.0);
-    radiance[pixel] += reflectance * kInvPi * estimate.irradiance;
+    vec3 light = reflectance * estimate.irradiance;
+    if (translucent)
+    {
+        estimate = estimateIrradiance(s.position, -s.geometric_normal, size.count, params.photon_count, square(radius), square(radius) / 16.0);
+        light += point.throughput * diffuseTransmittance(v.bsdf, cosine) * estimate.irradiance;
+    }
+    radiance[pixel] += kInvPi * light;
 }

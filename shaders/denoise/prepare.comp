@@ -29,15 +29,16 @@ void main()
     float part = params.shared_ != 0u ? 1.0 - shares[pixel] : 1.0;
     if (point.slot != kNone && part > 0.0)
     {
-        Surface s = surfaceAt(point);
-        Bsdf b = bsdfAt(materialAt(s), s.front);
-        float cosine = max(0.0, -dot(s.normal, point.direction));
-        vec3 specular = b.smooth_specular ? vec3(0.0) : specularReflectance(b, cosine);
+        PathVertex v = vertexAt(point);
+        Surface s = v.surface;
+        Bsdf b = v.bsdf;
+        float cosine = max(0.0, v.wo.z);
+        vec3 specular = hasGlossyLobe(b) ? specularReflectance(b, cosine) : vec3(0.0);
         vec3 reflectance = params.glossy != 0u ? specular : specular + diffuseReflectance(b, cosine);
         float share = luminance(specular) / max(luminance(reflectance), 1e-20);
-        if (params.glossy == 0u || !b.smooth_specular) // else it sends no ray
+        if (params.glossy == 0u || hasGlossyLobe(b)) // else it sends no ray
             signal = Signal(noisy_light[pixel], max(part * point.throughput * reflectance, vec3(kLeastReflectance)),
-                            max(mix(1.0, b.alpha, share), 1.0 / 255.0), 0.0);
+                            max(mix(1.0, sharpestAlpha(b), share), 1.0 / 255.0), 0.0);
         smooth_normal = s.smooth_normal;
         normal = s.normal;
     }

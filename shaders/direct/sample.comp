@@ -35,12 +35,12 @@ LightSample sampleGroup(vec3 point, Sampler s)
 
 /// What the light sends through the BSDF if nothing is in the way, over the candidate's density. Against the BSDF's ray it is
 /// weighed as one sample, however many candidates there are: where the BSDF finds the light better, it keeps its say.
-vec3 unshadowed(Surface s, Bsdf b, mat3 frame, vec3 wo, LightSample light)
+vec3 unshadowed(PathVertex v, LightSample light)
 {
-    vec3 wi = light.wi * frame;
-    if (light.weight == vec3(0.0) || !sidesAgree(s, light.wi, wi.z))
+    vec3 wi = light.wi * v.frame;
+    if (light.weight == vec3(0.0) || !sidesAgree(v.surface, light.wi, wi.z))
         return vec3(0.0);
-    BsdfValue f = evaluateBsdf(b, wo, wi);
+    BsdfValue f = evaluateBsdf(v.bsdf, v.wo, wi);
     float mis = light.pdf > 0.0 ? misWeight(light.pdf, f.pdf) : 1.0;
     return (f.diffuse + f.specular) * abs(wi.z) * light.weight * mis;
 }
@@ -51,15 +51,15 @@ void main()
     if (path >= params.point_count || points[path].slot == kNone)
         return;
     ShadingPoint point = points[path];
-    Surface s = surfaceAt(point);
-    Bsdf b = bsdfAt(materialAt(s), s.front);
-    if (!hasDensity(b))
+    PathVertex v = vertexAt(point);
+    Surface s = v.surface;
+    if (!hasDensity(v.bsdf))
         return;
-    mat3 frame = frameAround(s.normal);
-    vec3 wo = -point.direction * frame;
     uint index = params.first_sample * params.light_sample_count + params.light_sample;
     vec3 throughput = point.throughput / float(params.light_sample_count);
     Sampler bsdf_sampler = vertexSampler(path, point.depth + 1u, params.point_count, index, params.seed);
+    if (hasFeature(kFeatureDispersion))
+        disperse(v, point.throughput, dispersionDraw(bsdf_sampler));
     bsdf_sampler.dimension += kLightPairs;
     vec2 u = nextPair(bsdf_sampler), choice = nextPair(bsdf_sampler);
 
@@ -70,7 +70,7 @@ void main()
     {
         LightSample light = sampleGroup(s.position, vertexSampler(path, point.depth + 1u, params.point_count,
                                                                   index * params.candidate_count + k, params.light_seed));
-        vec3 candidate = throughput * unshadowed(s, b, frame, wo, light);
+        vec3 candidate = throughput * unshadowed(v, light);
         float weight = luminance(candidate);
         if (!(weight > 0.0))
             continue;
@@ -91,8 +91,8 @@ void main()
 
     if (params.asks_emitters == 0u)
         return;
-    BsdfSample next = sampleBsdf(b, wo, choice.x, u);
-    vec3 wi = frame * next.wi;
+    BsdfSample next = sampleBsdf(v.bsdf, v.wo, choice.x, u);
+    vec3 wi = v.frame * next.wi;
     if (next.pdf == 0.0 || next.weight == vec3(0.0) || !sidesAgree(s, wi, next.wi.z))
         return;
     uint slot = atomicAdd(emitter_queue.count, 1u);

@@ -8,7 +8,7 @@ GPU_NAMESPACE_BEGIN
 
 struct GatherState // of a ray between two links of its specular chain
 {
-    vec3 throughput;
+    vec3 throughput; // of a sample's ray at first: the cosine's density over its own
     uint medium;
     uint specular; // delta events so far
 };
@@ -17,7 +17,7 @@ GPU_SIZE(GatherState, 20);
 struct Gathered // what one ray brought
 {
     vec3 radiance;
-    float nearness; // 1 / metres to its first surface; 0: none
+    float nearness; // 1 / metres to its first surface, times the weight of a sample's ray; 0: none
 };
 GPU_SIZE(Gathered, 16);
 
@@ -40,8 +40,9 @@ struct GatherParams
     uint mode;        // kCut*
     uint photon_count; // k, in mode kCutKnn
     float radius;     // of density estimation at most, in mode kCutKnn: of the distance from the viewer
+    uint leg_count;   // that say where light comes from: all of them, or 0
 };
-GPU_SIZE(GatherParams, 28);
+GPU_SIZE(GatherParams, 32);
 
 GPU_NAMESPACE_END
 #endif

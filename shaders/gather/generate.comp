@@ -2,9 +2,10 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "shaders/gather/gather.h"
+#include "shaders/lib/aim.glsl"
 #include "shaders/lib/gather_ray.glsl"
 
-// Cosine-distributed, stratified rays from every new sample. One thread per ray.
+// Stratified rays from every new sample, by the cosine and to where light comes from. One group per sample.
 
 layout(local_size_x = kRaysGroupSize) in;
 layout(push_constant, scalar) uniform Params { GatherParams params; };
@@ -15,18 +16,58 @@ layout(set = 1, binding = 2, scalar) buffer Queue { QueueSize queue; };
 layout(set = 1, binding = 3, scalar) writeonly buffer Rays { Ray rays[]; };
 layout(set = 1, binding = 5, scalar) writeonly buffer States { GatherState states[]; };
 layout(set = 1, binding = 4, scalar) readonly buffer KeptSize { QueueSize kept_size; }; // the first samples, which have all they need
+layout(set = 1, binding = 6, scalar) readonly buffer Legs { Leg legs[]; };
+layout(set = 1, binding = 7, scalar) writeonly buffer Directions { uint directions[]; }; // octahedral, by ray
+
+/// Counts by cell what the legs bring to x.
+void countLegs(vec3 x, vec3 normal, mat3 frame, uint thread)
+{
+    const uint kEach = kLegCount / kRaysGroupSize;
+    float weights[kEach];
+    vec2 sum = vec2(0.0);
+    for (uint k = 0u; k < kEach; ++k)
+    {
+        weights[k] = params.leg_count > 0u ? legWeight(legs[thread + k * kRaysGroupSize], x, normal) : 0.0;
+        sum += vec2(weights[k], square(weights[k]));
+    }
+    for (uint c = thread; c < kAimCells; c += kRaysGroupSize)
+        aim_counts[c] = 0u;
+    aim_sums[thread] = sum;
+    for (uint half_ = kRaysGroupSize / 2u; half_ > 0u; half_ /= 2u)
+    {
+        barrier();
+        if (thread < half_)
+            aim_sums[thread] += aim_sums[thread + half_];
+    }
+    barrier();
+    for (uint k = 0u; k < kEach; ++k)
+        if (weights[k] > 0.0)
+        {
+            uint cell = aimCell(normalize(legs[thread + k * kRaysGroupSize].from - x) * frame);
+            atomicAdd(aim_counts[cell], uint(weights[k] / aim_sums[0].x * float(kAimWhole) + 0.5));
+        }
+    barrier();
+}
 
 void main()
 {
-    uint i = gl_GlobalInvocationID.x;
-    uint count = (size.count - kept_size.count) * params.ray_count;
-    if (i == 0u)
-        queue = queueSize(count);
-    if (i >= count)
-        return;
-    uint new_sample = i / params.ray_count, sample_ = kept_size.count + new_sample;
-    vec3 normal = unpackNormal(samples[sample_].normal);
-    vec3 direction = gatherDirection(normal, new_sample, i - new_sample * params.ray_count, params.ray_count, params.seed);
-    rays[i] = Ray(offsetOrigin(samples[sample_].position, normal), kInfinity, direction, i);
-    states[i] = GatherState(vec3(1.0), kNone, 0u);
+    uint new_sample = gl_WorkGroupID.x, sample_ = kept_size.count + new_sample, thread = gl_LocalInvocationID.x;
+    if (gl_GlobalInvocationID.x == 0u)
+        queue = queueSize((size.count - kept_size.count) * params.ray_count);
+    if (sample_ >= size.count)
+        return; // all of the group
+    vec3 position = samples[sample_].position, normal = unpackNormal(samples[sample_].normal);
+    mat3 frame = frameAround(normal);
+    countLegs(position, normal, frame, thread);
+    distributeAim(thread);
+    for (uint ray = thread; ray < params.ray_count; ray += kRaysGroupSize)
+    {
+        float weight;
+        vec2 pair = aimPair(gatherPair(new_sample, ray, params.ray_count, params.seed), weight);
+        vec3 direction = frame * cosineDirection(pair);
+        uint i = new_sample * params.ray_count + ray;
+        rays[i] = Ray(offsetOrigin(position, normal), kInfinity, direction, i);
+        states[i] = GatherState(vec3(weight), kNone, 0u);
+        directions[i] = packNormal(direction);
+    }
 }

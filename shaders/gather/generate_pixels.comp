@@ -24,20 +24,17 @@ void main()
     ShadingPoint point = points[pixel];
     if (point.slot == kNone)
         return;
-    Surface s = surfaceAt(point);
-    Bsdf b = bsdfAt(materialAt(s), s.front);
-    mat3 frame = frameAround(s.normal);
-    vec3 wo = -point.direction * frame;
-    if (diffuseReflectance(b, wo.z) == vec3(0.0))
+    PathVertex v = vertexAt(point);
+    if (diffuseReflectance(v.bsdf, v.wo.z) == vec3(0.0))
         return;
     for (uint k = 0u; k < params.ray_count; ++k)
     {
         Sampler sampler_ = Sampler(hash(params.seed, pixel), params.first_ray + k, 0u);
         vec3 local = cosineDirection(nextPair(sampler_));
-        vec3 wi = frame * local;
-        if (!sidesAgree(s, wi, local.z))
+        vec3 wi = v.frame * local;
+        if (!sidesAgree(v.surface, wi, local.z))
             continue;
-        states[first + k] = GatherState(point.throughput * evaluateBsdf(b, wo, local).diffuse * kPi, kNone, 0u);
-        rays[first + k] = leavingRay(s, wi, kInfinity, first + k);
+        states[first + k] = GatherState(point.throughput * evaluateBsdf(v.bsdf, v.wo, local).diffuse * kPi, kNone, 0u);
+        rays[first + k] = leavingRay(v.surface, wi, kInfinity, first + k);
     }
 }

@@ -9,12 +9,13 @@ void main()
     GatherState state = GatherState(vec3(0.0), kNone, 0u);
     if (hit.slot != kNone) // a ray that gathers for nothing has none
         state = states[ray.path];
+    float weight = state.throughput.x;
     uint sample_ = ray.path / params.ray_count;
     Sampler sampler_ = Sampler(hash(params.seed, sample_), ray.path - sample_ * params.ray_count, 1u + params.depth);
     Link link = followLink(ray, hit, state, sampler_, false);
     bool goes_on = link.goes_on && params.depth < params.depth_limit;
     if (params.depth == 0u)
-        gathered[ray.path] = Gathered(link.radiance, hit.slot == kNone ? 0.0 : 1.0 / max(hit.t, 1e-6));
+        gathered[ray.path] = Gathered(link.radiance, hit.slot == kNone ? 0.0 : weight / max(hit.t, 1e-6));
     else
         gathered[ray.path].radiance += link.radiance;
     if (!goes_on)

@@ -2,7 +2,6 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "shaders/gather/gather.h"
-#include "shaders/lib/gather_ray.glsl"
 #include "shaders/lib/harmonics.glsl"
 
 // The light of every new sample by direction. One group per sample, so that the order of the sum is fixed: the group takes its
@@ -13,9 +12,9 @@ layout(push_constant, scalar) uniform Params { GatherParams params; };
 
 layout(set = 1, binding = 0, scalar) readonly buffer Size { QueueSize size; };
 layout(set = 1, binding = 1, scalar) readonly buffer GatheredBlock { Gathered gathered[]; };
-layout(set = 1, binding = 2, scalar) readonly buffer Samples { Sample samples[]; };
-layout(set = 1, binding = 3, scalar) writeonly buffer Harmonics { SampleHarmonics harmonics[]; };
-layout(set = 1, binding = 4, scalar) readonly buffer KeptSize { QueueSize kept_size; }; // the first samples, which have theirs
+layout(set = 1, binding = 2, scalar) writeonly buffer Harmonics { SampleHarmonics harmonics[]; };
+layout(set = 1, binding = 3, scalar) readonly buffer KeptSize { QueueSize kept_size; }; // the first samples, which have theirs
+layout(set = 1, binding = 4, scalar) readonly buffer Directions { uint directions[]; }; // octahedral, by ray
 
 shared float basis[kRaysGroupSize][kHarmonicsCount]; // the last is 1: the sum that the others are shares of
 shared float light[kRaysGroupSize][3];
@@ -25,14 +24,14 @@ void main()
 {
     uint new_sample = gl_WorkGroupID.x, sample_ = kept_size.count + new_sample, t = gl_LocalInvocationID.x;
     bool exists = sample_ < size.count;
-    vec3 normal = exists ? unpackNormal(samples[sample_].normal) : vec3(0.0, 0.0, 1.0);
     float sum = 0.0;
     for (uint first = 0u; first < params.ray_count; first += kRaysGroupSize)
     {
-        uint ray = first + t;
-        vec4 b[4] = harmonicBasis(gatherDirection(normal, new_sample, ray, params.ray_count, params.seed));
+        uint ray = first + t, i = new_sample * params.ray_count + ray;
+        bool looks = exists && ray < params.ray_count;
+        vec4 b[4] = harmonicBasis(looks ? unpackNormal(directions[i]) : vec3(0.0, 0.0, 1.0));
         b[3].w = 1.0;
-        vec3 radiance = exists && ray < params.ray_count ? gathered[new_sample * params.ray_count + ray].radiance : vec3(0.0);
+        vec3 radiance = looks ? gathered[i].radiance : vec3(0.0);
         for (uint k = 0u; k < kHarmonicsCount; ++k)
             basis[t][k] = b[k / 4u][k % 4u];
         for (uint channel = 0u; channel < 3u; ++channel)

@@ -25,28 +25,27 @@ void main()
     if (missing <= 0.0)
         return;
     ShadingPoint point = points[path];
-    Surface s = surfaceAt(point);
-    Bsdf b = bsdfAt(materialAt(s), s.front);
-    if (b.smooth_specular)
+    PathVertex v = vertexAt(point);
+    if (!hasGlossyLobe(v.bsdf))
         return;
-    mat3 frame = frameAround(s.normal);
-    vec3 wo = -point.direction * frame;
-    LobeProbabilities p = lobeProbabilities(b, wo.z);
-    float specular = p.reflection + p.transmission;
-    vec3 reflected = specularReflectance(b, wo.z);
+    vec3 reflected = specularReflectance(v.bsdf, v.wo.z);
     float survival = clamp(missing * luminance(reflected * point.throughput) / params.sure_reflectance, 0.05, 1.0);
     Sampler sampler_ = vertexSampler(path, point.depth + 1u, params.point_count, params.first_sample, params.seed);
+    if (hasFeature(kFeatureDispersion))
+        disperse(v, point.throughput, dispersionDraw(sampler_));
+    Bsdf b = v.bsdf;
+    LobeProbabilities p = lobeProbabilities(b, v.wo);
+    float specular = glossyProbability(b, p);
     sampler_.dimension += kVertexDimensions - 2u; // those before are direct light's
     vec2 u = nextPair(sampler_), choice = nextPair(sampler_);
     if (specular == 0.0 || choice.y >= survival)
         return;
-    BsdfSample next = sampleBsdf(b, wo, p.diffuse + choice.x * specular * 0.999999, u);
-    vec3 wi = frame * next.wi;
+    BsdfSample next = sampleBsdf(b, v.wo, p.diffuse + choice.x * specular * 0.999999, u);
+    vec3 wi = v.frame * next.wi;
     float chosen = (next.pdf - p.diffuse * max(0.0, next.wi.z) * kInvPi) / specular; // density of the specular lobes alone
-    if (next.pdf == 0.0 || !(chosen > 0.0) || !sidesAgree(s, wi, next.wi.z))
+    if (next.pdf == 0.0 || !(chosen > 0.0) || !sidesAgree(v.surface, wi, next.wi.z))
         return;
     vec3 weight = (next.weight - next.diffuse_weight) * (next.pdf / chosen);
-    bool entered = next.wi.z < 0.0 && !b.thin;
-    states[path] = GatherState(point.throughput * weight * (missing / survival), entered && s.front ? s.material : kNone, 0u);
-    rays[atomicAdd(queue.count, 1u)] = leavingRay(s, wi, kInfinity, path);
+    states[path] = GatherState(point.throughput * weight * (missing / survival), mediumAfter(v, next, kNone), 0u);
+    rays[atomicAdd(queue.count, 1u)] = leavingRay(v.surface, wi, kInfinity, path);
 }

@@ -3,7 +3,7 @@
 #extension GL_EXT_scalar_block_layout : require
 #include "shaders/glossy/glossy.h"
 #include "shaders/lib/harmonics.glsl"
-#include "shaders/lib/shading_point.glsl"
+#include "shaders/lib/path.glsl"
 #include "shaders/lib/tile.glsl"
 
 // What rough lobes reflect of the light around a shading point, from the spherical harmonics of the irradiance samples whose
@@ -82,8 +82,9 @@ void main()
         return;
     shares[pixel] = 0.0;
     ShadingPoint point = points[pixel];
-    Surface s = surfaceAt(point);
-    Bsdf b = bsdfAt(materialAt(s), s.front);
+    PathVertex v = vertexAt(point);
+    Surface s = v.surface;
+    Bsdf b = v.bsdf;
     float share = harmonicShare(b);
     if (share == 0.0)
         return;

@@ -1,175 +1,47 @@
-// The glTF BSDF: Lambert under a GGX dielectric layer, GGX metal, smooth and rough dielectric transmission.
-// glTF 2.0 appendix B (separable Smith masking, Schlick Fresnel), KHR_materials_specular, _ior, _transmission, _volume.
+// The BSDF of the layers of lib/bsdf/layers.glsl: what it is towards a direction, and directions chosen by it. Lambert
+// reflection and transmission, sheen, GGX coat, reflection and refraction; the last three are deltas where they are smooth.
 // Directions are local: z along the shading normal on the viewer's side, wo.z > 0 but for matter without specular lobes.
 // Functions only.
 #ifndef LIB_BSDF_GLSL
 #define LIB_BSDF_GLSL
-#include "shaders/lib/lobe_reflectance.h"
-#include "shaders/lib/math.glsl"
-#include "shaders/lib/surface.glsl"
+#include "shaders/lib/bsdf/layers.glsl"
 
-struct Bsdf
+struct LobeProbabilities { float diffuse, translucent, sheen, clearcoat, reflection, transmission; };
+
+LobeProbabilities lobeProbabilities(Bsdf b, vec3 wo)
 {
-    vec3 base_color;
-    float metallic;
-    vec3 f0;            // dielectric reflectance at normal incidence, KHR_materials_specular applied
-    float f90;
-    float alpha;        // GGX width, roughness^2
-    float transmission;
-    float eta;          // index behind the surface / index on the viewer's side
-    bool smooth_specular;   // reflection and transmission are delta lobes
-    bool thin;
-};
-
-struct BsdfSample
-{
-    vec3 wi;     // local; below the surface for transmission
-    vec3 weight; // f |cos| / pdf; zero: absorbed
-    vec3 diffuse_weight; // the diffuse lobe's part of it
-    float pdf;   // per steradian, 0 for a delta lobe
-    bool passed; // went straight through a thin smooth wall: not a scattering event
-};
-
-Bsdf bsdfAt(SurfaceMaterial m, bool front)
-{
-    Bsdf b;
-    b.base_color = m.base_color;
-    b.metallic = hasFeature(kFeatureMetal) ? m.metallic : 0.0;
-    b.f0 = min(square((m.ior - 1.0) / (m.ior + 1.0)) * m.specular_color, vec3(1.0)) * m.specular;
-    b.f90 = m.specular;
-    b.smooth_specular = hasFeature(kFeatureSpecular) && m.roughness < kSmoothRoughness;
-    b.alpha = max(square(m.roughness), square(kSmoothRoughness));
-    b.transmission = hasFeature(kFeatureTransmission) ? m.transmission : 0.0;
-    b.thin = (m.flags & kMaterialThin) != 0u;
-    b.eta = front || b.thin ? m.ior : 1.0 / m.ior;
-    return b;
-}
-
-float schlick(float cosine) // the power only
-{
-    float x = clamp(1.0 - cosine, 0.0, 1.0);
-    return x * x * x * x * x;
-}
-
-/// Unpolarised Fresnel reflectance of a dielectric boundary; 1 under total internal reflection.
-float fresnelExact(float cosine, float eta)
-{
-    float sin2_t = (1.0 - cosine * cosine) / (eta * eta);
-    if (sin2_t >= 1.0)
-        return 1.0;
-    float cos_t = sqrt(1.0 - sin2_t);
-    float parallel = (eta * cosine - cos_t) / (eta * cosine + cos_t);
-    float perpendicular = (cosine - eta * cos_t) / (cosine + eta * cos_t);
-    return 0.5 * (parallel * parallel + perpendicular * perpendicular);
-}
-
-/// Reflectance of the dielectric layer. Transmissive surfaces take the exact curve, rescaled to f0..f90.
-vec3 dielectricFresnel(Bsdf b, float cosine)
-{
-    float rise = schlick(cosine);
-    if (!hasFeature(kFeatureSpecular))
-        return vec3(0.0);
-    if (hasFeature(kFeatureTransmission) && b.transmission > 0.0)
-    {
-        float normal = square((b.eta - 1.0) / (b.eta + 1.0));
-        rise = normal < 1.0 ? clamp((fresnelExact(cosine, b.eta) - normal) / (1.0 - normal), 0.0, 1.0) : 1.0;
-    }
-    return b.f0 + (vec3(b.f90) - b.f0) * rise;
-}
-
-/// What the specular reflection lobe is multiplied with: metal and dielectric share one GGX lobe.
-vec3 reflectionColor(Bsdf b, float cosine)
-{
-    vec3 metal = b.base_color + (1.0 - b.base_color) * schlick(cosine);
-    return mix(dielectricFresnel(b, cosine), metal, b.metallic);
-}
-
-/// What is left for the layer below, diffuse and transmission together.
-vec3 belowColor(Bsdf b, float cosine)
-{
-    return (1.0 - b.metallic) * (1.0 - maxComponent(dielectricFresnel(b, cosine))) * b.base_color;
-}
-
-/// Colour of the diffuse lobe before the dielectric layer above it takes its share; black where there is none.
-vec3 diffuseColor(Bsdf b) { return (1.0 - b.metallic) * (1.0 - b.transmission) * b.base_color; }
-
-/// Directional-hemispherical reflectance of the diffuse lobe. The layer's (1 - wo.h)^5 has no closed form over the
-/// hemisphere: a cubic in wo's cosine, good to 1e-4.
-vec3 diffuseReflectance(Bsdf b, float cosine)
-{
-    if (!hasFeature(kFeatureSpecular))
-        return diffuseColor(b);
-    float mean_rise = 0.0280436 + cosine * (-0.0772954 + cosine * (0.0747859 - 0.0255469 * cosine));
-    return diffuseColor(b) * (1.0 - maxComponent(b.f0 + (vec3(b.f90) - b.f0) * mean_rise));
-}
-
-/// The same of the rough reflection lobe; 0 for a smooth one.
-vec3 glossyReflectance(Bsdf b, float cosine)
-{
-    if (!hasFeature(kFeatureSpecular) || b.smooth_specular)
-        return vec3(0.0);
-    float roughness = sqrt(b.alpha);
-    return clamp(mix(b.f0, b.base_color, b.metallic) * lobeScale(roughness, cosine) +
-                     mix(b.f90, 1.0, b.metallic) * lobeBias(roughness, cosine),
-                 0.0, 1.0);
-}
-
-/// Of all rough specular lobes, what passes through the surface included; of a smooth one only what passes.
-vec3 specularReflectance(Bsdf b, float cosine) { return glossyReflectance(b, cosine) + belowColor(b, cosine) * b.transmission; }
-
-struct LobeProbabilities { float reflection, diffuse, transmission; };
-
-LobeProbabilities lobeProbabilities(Bsdf b, float cosine)
-{
-    float reflection = luminance(reflectionColor(b, cosine));
-    float below = luminance(belowColor(b, cosine));
-    LobeProbabilities p = LobeProbabilities(reflection, below * (1.0 - b.transmission), below * b.transmission);
-    float sum = p.reflection + p.diffuse + p.transmission;
+    float kept = covered(b, wo, wo);
+    float passed = kept * luminance(belowColor(b, wo.z));
+    LobeProbabilities p;
+    p.diffuse = passed * reflectedShare(b);
+    p.translucent = 0.0;
+    if (isTranslucent(b))
+        p.translucent = kept * passedShare(b, wo.z) * translucentShare(b) * luminance(b.diffuse_transmission_color);
+    p.sheen = hasSheen(b) ? luminance(b.sheen_color) * sheenAlbedo(b.sheen_roughness, wo.z) : 0.0;
+    p.clearcoat = hasClearcoat(b) ? clearcoatFresnel(b, clearcoatCosine(b, wo)) : 0.0;
+    p.reflection = kept * luminance(reflectionColor(b, wo.z));
+    p.transmission = passed * b.transmission;
+    float sum = p.reflection + p.diffuse + p.transmission + p.translucent + p.sheen + p.clearcoat;
     float scale = sum > 0.0 ? 1.0 / sum : 0.0;
-    return LobeProbabilities(p.reflection * scale, p.diffuse * scale, p.transmission * scale);
+    return LobeProbabilities(p.diffuse * scale, p.translucent * scale, p.sheen * scale, p.clearcoat * scale, p.reflection * scale,
+                             p.transmission * scale);
 }
 
-// ---- GGX (Walter et al. 2007) ----------------------------------------------------------------------------------------
-
-float ggxDistribution(vec3 h, float alpha)
+/// Probability of a lobe that is neither diffuse nor a delta.
+float glossyProbability(Bsdf b, LobeProbabilities p)
 {
-    float a2 = alpha * alpha;
-    float d = h.z * h.z * (a2 - 1.0) + 1.0;
-    return a2 / (kPi * d * d);
+    return p.translucent + p.sheen + (b.smooth_specular ? 0.0 : p.reflection + p.transmission) +
+           (hasClearcoat(b) && !b.smooth_clearcoat ? p.clearcoat : 0.0);
 }
 
-float ggxMasking(float cosine, float alpha) // Smith G1
-{
-    float c2 = cosine * cosine;
-    return 2.0 / (1.0 + sqrt(1.0 + alpha * alpha * (1.0 - c2) / max(c2, 1e-12)));
-}
-
-/// A normal visible from wo (Heitz 2018, "Sampling the GGX Distribution of Visible Normals").
-vec3 sampleVisibleNormal(vec3 wo, float alpha, vec2 u)
-{
-    vec3 v = normalize(vec3(alpha * wo.xy, wo.z));
-    float length2 = dot(v.xy, v.xy);
-    vec3 t1 = length2 > 0.0 ? vec3(-v.y, v.x, 0.0) * inversesqrt(length2) : vec3(1.0, 0.0, 0.0);
-    vec3 t2 = cross(v, t1);
-    float r = sqrt(u.x), phi = 2.0 * kPi * u.y;
-    float x = r * cos(phi), y = r * sin(phi);
-    float s = 0.5 * (1.0 + v.z);
-    y = (1.0 - s) * sqrt(max(0.0, 1.0 - x * x)) + s * y;
-    vec3 n = x * t1 + y * t2 + sqrt(max(0.0, 1.0 - x * x - y * y)) * v;
-    return normalize(vec3(alpha * n.xy, max(1e-6, n.z)));
-}
-
-float visibleNormalPdf(vec3 wo, vec3 h, float alpha)
-{
-    return ggxDistribution(h, alpha) * ggxMasking(wo.z, alpha) * max(0.0, dot(wo, h)) / wo.z;
-}
+bool hasDeltaLobe(Bsdf b) { return b.smooth_specular || (hasClearcoat(b) && b.smooth_clearcoat); }
 
 // ---- Evaluation --------------------------------------------------------------------------------------------------------
 
-struct BsdfValue // towards one direction; the BSDF is the sum of both lobes
+struct BsdfValue // towards one direction; the BSDF is the sum of both parts
 {
-    vec3 diffuse;  // f, 1/sr
-    vec3 specular; // f of reflection and transmission, 1/sr; 0 where they are delta
+    vec3 diffuse;  // f of Lambert reflection, 1/sr
+    vec3 specular; // f of all other lobes, 1/sr; 0 where they are delta
     float pdf;     // per steradian, with which sampleBsdf would choose the direction through any of them
 };
 
@@ -180,10 +52,10 @@ void addReflection(Bsdf b, LobeProbabilities p, vec3 wo, vec3 wi, inout BsdfValu
     vec3 mirrored = vec3(wi.xy, abs(wi.z));
     vec3 h = normalize(wo + mirrored);
     float cosine = dot(wo, h);
-    float g = ggxMasking(wo.z, b.alpha) * ggxMasking(mirrored.z, b.alpha);
-    float lobe = ggxDistribution(h, b.alpha) * g / (4.0 * wo.z * mirrored.z);
-    value.specular = lobe * (reflected ? reflectionColor(b, cosine) : belowColor(b, cosine) * b.transmission);
-    value.pdf += (reflected ? p.reflection : p.transmission) * visibleNormalPdf(wo, h, b.alpha) / (4.0 * cosine);
+    float g = ggxMasking(wo, alphas(b)) * ggxMasking(mirrored, alphas(b));
+    float lobe = ggxDistribution(h, alphas(b)) * g / (4.0 * wo.z * mirrored.z);
+    value.specular += covered(b, wo, wi) * lobe * (reflected ? reflectionColor(b, cosine) : belowColor(b, cosine) * b.transmission);
+    value.pdf += (reflected ? p.reflection : p.transmission) * visibleNormalPdf(wo, h, alphas(b)) / (4.0 * cosine);
 }
 
 /// GGX refraction into what lies behind the surface.
@@ -195,11 +67,41 @@ void addRefraction(Bsdf b, LobeProbabilities p, vec3 wo, vec3 wi, inout BsdfValu
     if (cos_o <= 0.0 || cos_i >= 0.0)
         return;
     float denominator = square(cos_o + b.eta * cos_i);
-    float g = ggxMasking(wo.z, b.alpha) * ggxMasking(-wi.z, b.alpha);
+    float g = ggxMasking(wo, alphas(b)) * ggxMasking(-wi, alphas(b));
     // Walter et al. 2007, eq. 21, for radiance arriving from behind (eta^2 of eq. 21 cancels against the index ratio).
-    value.specular = belowColor(b, cos_o) * b.transmission * ggxDistribution(h, b.alpha) * g * abs(cos_o * cos_i) /
-                     (abs(wo.z * wi.z) * denominator);
-    value.pdf = p.transmission * visibleNormalPdf(wo, h, b.alpha) * abs(cos_i) * b.eta * b.eta / denominator;
+    value.specular += covered(b, wo, wi) * b.dispersed * belowColor(b, cos_o) * b.transmission * ggxDistribution(h, alphas(b)) * g *
+                      abs(cos_o * cos_i) / (abs(wo.z * wi.z) * denominator);
+    value.pdf += p.transmission * visibleNormalPdf(wo, h, alphas(b)) * abs(cos_i) * b.eta * b.eta / denominator;
+}
+
+/// Lambert on the far side, under the same dielectric layer: by the half vector of the mirrored direction.
+void addTranslucence(Bsdf b, LobeProbabilities p, vec3 wo, vec3 wi, inout BsdfValue value)
+{
+    float cosine = sqrt(max(0.0, 0.5 + 0.5 * dot(wo, vec3(wi.xy, -wi.z))));
+    value.specular += covered(b, wo, wi) * passedShare(b, cosine) * translucentShare(b) * b.diffuse_transmission_color * kInvPi;
+    value.pdf += p.translucent * -wi.z * kInvPi;
+}
+
+void addSheen(Bsdf b, LobeProbabilities p, vec3 wo, vec3 wi, inout BsdfValue value)
+{
+    value.specular += b.sheen_color * sheenLobe(b.sheen_roughness, wo, wi);
+    if (hasClearcoat(b))
+        value.specular *= 1.0 - max(clearcoatAlbedo(b, clearcoatCosine(b, wo)), clearcoatAlbedo(b, clearcoatCosine(b, wi)));
+    value.pdf += p.sheen * 0.5 * kInvPi; // directions of equal solid angle
+}
+
+void addClearcoat(Bsdf b, LobeProbabilities p, vec3 wo, vec3 wi, inout BsdfValue value)
+{
+    mat3 frame = clearcoatFrame(b);
+    vec3 v = wo * frame, l = wi * frame;
+    if (v.z <= 0.0 || l.z <= 0.0)
+        return;
+    vec2 width = vec2(b.clearcoat_alpha);
+    vec3 h = normalize(v + l);
+    float cosine = dot(v, h), g = ggxMasking(v, width) * ggxMasking(l, width);
+    // The coat's own cosine to the light, in the place of the base's that callers multiply with.
+    value.specular += clearcoatFresnel(b, cosine) * ggxDistribution(h, width) * g / (4.0 * v.z * max(wi.z, 1e-4));
+    value.pdf += p.clearcoat * visibleNormalPdf(v, h, width) / (4.0 * cosine);
 }
 
 /// All lobes that are not delta.
@@ -208,16 +110,24 @@ BsdfValue evaluateBsdf(Bsdf b, vec3 wo, vec3 wi)
     BsdfValue value = BsdfValue(vec3(0.0), vec3(0.0), 0.0);
     if (wi.z == 0.0)
         return value;
-    LobeProbabilities p = lobeProbabilities(b, wo.z);
+    LobeProbabilities p = lobeProbabilities(b, wo);
     if (wi.z > 0.0)
     {
         float cosine = sqrt(max(0.0, 0.5 + 0.5 * dot(wo, wi))); // of the half vector
-        value.diffuse = belowColor(b, cosine) * (1.0 - b.transmission) * kInvPi;
+        value.diffuse = covered(b, wo, wi) * belowColor(b, cosine) * reflectedShare(b) * kInvPi;
         value.pdf = p.diffuse * wi.z * kInvPi;
     }
-    if (!hasFeature(kFeatureSpecular) || b.smooth_specular || wo.z <= 0.0)
+    else if (isTranslucent(b))
+        addTranslucence(b, p, wo, wi, value);
+    if (!hasFeature(kFeatureSpecular) || wo.z <= 0.0)
         return value;
-    if (wi.z > 0.0 || b.thin)
+    if (hasSheen(b) && wi.z > 0.0)
+        addSheen(b, p, wo, wi, value);
+    if (hasClearcoat(b) && !b.smooth_clearcoat && wi.z > 0.0)
+        addClearcoat(b, p, wo, wi, value);
+    if (b.smooth_specular)
+        return value;
+    if (wi.z > 0.0 || (b.thin && b.transmission > 0.0))
         addReflection(b, p, wo, wi, value);
     else if (hasFeature(kFeatureTransmission) && b.transmission > 0.0)
         addRefraction(b, p, wo, wi, value);
@@ -226,65 +136,115 @@ BsdfValue evaluateBsdf(Bsdf b, vec3 wo, vec3 wi)
 
 // ---- Sampling ----------------------------------------------------------------------------------------------------------
 
+struct BsdfSample
+{
+    vec3 wi;     // local; below the surface for transmission
+    vec3 weight; // f |cos| / pdf; zero: absorbed
+    vec3 diffuse_weight; // the diffuse lobe's part of it
+    float pdf;   // per steradian, 0 for a delta lobe
+    bool passed; // went straight through a thin smooth wall: not a scattering event
+    bool refracted; // into matter of another index
+};
+
+const BsdfSample kAbsorbed = BsdfSample(vec3(0.0, 0.0, 1.0), vec3(0.0), vec3(0.0), 0.0, false, false);
+
+const uint kDiffuseLobe = 0u, kTranslucentLobe = 1u, kSheenLobe = 2u, kClearcoatLobe = 3u, kReflectionLobe = 4u, kTransmissionLobe = 5u;
+
+/// By intervals of `choice`: the diffuse lobe, then the glossy ones, then the deltas.
+uint chooseLobe(Bsdf b, LobeProbabilities p, float choice)
+{
+    if (!hasFeature(kFeatureSpecular) || choice < p.diffuse)
+        return kDiffuseLobe;
+    float end = p.diffuse;
+    if (isTranslucent(b) && choice < (end += p.translucent))
+        return kTranslucentLobe;
+    if (hasSheen(b) && choice < (end += p.sheen))
+        return kSheenLobe;
+    bool coated = hasClearcoat(b);
+    if (coated && !b.smooth_clearcoat && choice < (end += p.clearcoat))
+        return kClearcoatLobe;
+    coated = coated && b.smooth_clearcoat;
+    end += p.reflection;
+    if (choice < end || (p.transmission == 0.0 && !coated))
+        return kReflectionLobe;
+    return coated && choice >= end + p.transmission ? kClearcoatLobe : kTransmissionLobe;
+}
+
+BsdfSample mirrorSample(vec3 wi, vec3 weight) { return BsdfSample(wi, weight, vec3(0.0), 0.0, false, false); }
+
+BsdfSample clearcoatMirror(Bsdf b, LobeProbabilities p, vec3 wo)
+{
+    mat3 frame = clearcoatFrame(b);
+    vec3 v = wo * frame, wi = frame * vec3(-v.xy, v.z);
+    if (v.z <= 0.0 || wi.z <= 0.0 || p.clearcoat == 0.0)
+        return kAbsorbed;
+    return mirrorSample(wi, vec3(clearcoatFresnel(b, v.z) / p.clearcoat));
+}
+
+/// Of a smooth surface.
 BsdfSample deltaSample(Bsdf b, LobeProbabilities p, vec3 wo, bool reflect_it)
 {
+    float kept = covered(b, wo, wo);
     if (reflect_it)
-        return BsdfSample(vec3(-wo.xy, wo.z), reflectionColor(b, wo.z) / p.reflection, vec3(0.0), 0.0, false);
-    vec3 weight = belowColor(b, wo.z) * b.transmission / p.transmission;
+        return p.reflection == 0.0 ? kAbsorbed : mirrorSample(vec3(-wo.xy, wo.z), kept * reflectionColor(b, wo.z) / p.reflection);
+    vec3 weight = kept * belowColor(b, wo.z) * b.transmission / p.transmission;
     if (b.thin)
-        return BsdfSample(-wo, weight, vec3(0.0), 0.0, true);
+        return BsdfSample(-wo, weight, vec3(0.0), 0.0, true, false);
     float sin2_t = (1.0 - wo.z * wo.z) / (b.eta * b.eta);
     if (sin2_t >= 1.0) // total internal reflection has no transmission; belowColor is 0 there
-        return BsdfSample(-wo, vec3(0.0), vec3(0.0), 0.0, false);
+        return kAbsorbed;
     // Radiance is squeezed into a smaller solid angle in the denser medium: (n_viewer / n_behind)^2.
-    return BsdfSample(vec3(-wo.xy / b.eta, -sqrt(1.0 - sin2_t)), weight / (b.eta * b.eta), vec3(0.0), 0.0, false);
+    return BsdfSample(vec3(-wo.xy / b.eta, -sqrt(1.0 - sin2_t)), b.dispersed * weight / (b.eta * b.eta), vec3(0.0), 0.0, false, true);
+}
+
+/// A direction of the lobe, which is no delta. @return z is 0 where there is none
+vec3 sampleLobe(Bsdf b, uint lobe, vec3 wo, vec2 u)
+{
+    const vec3 kNowhere = vec3(1.0, 0.0, 0.0);
+    if (lobe == kDiffuseLobe)
+        return cosineDirection(u);
+    if (lobe == kTranslucentLobe)
+        return -cosineDirection(u);
+    if (lobe == kSheenLobe)
+    {
+        float r = sqrt(max(0.0, 1.0 - u.x * u.x)), phi = 2.0 * kPi * u.y;
+        return vec3(r * cos(phi), r * sin(phi), u.x);
+    }
+    if (lobe == kClearcoatLobe)
+    {
+        mat3 frame = clearcoatFrame(b);
+        vec3 v = wo * frame;
+        vec3 wi = v.z > 0.0 ? frame * reflect(-v, sampleVisibleNormal(v, vec2(b.clearcoat_alpha), u)) : kNowhere;
+        return wi.z > 0.0 ? wi : kNowhere;
+    }
+    vec3 h = sampleVisibleNormal(wo, alphas(b), u);
+    vec3 wi = reflect(-wo, h);
+    if (lobe == kReflectionLobe || b.thin)
+        return wi.z <= 0.0 ? kNowhere : vec3(wi.xy, lobe == kReflectionLobe ? wi.z : -wi.z);
+    wi = refract(-wo, h, 1.0 / b.eta);
+    return wi.z < 0.0 ? wi : kNowhere; // no refraction, or it comes out on the wrong side
 }
 
 /// Chooses a direction. @param choice picks the lobe, @param u the direction within it
 BsdfSample sampleBsdf(Bsdf b, vec3 wo, float choice, vec2 u)
 {
-    const BsdfSample kAbsorbed = BsdfSample(vec3(0.0, 0.0, 1.0), vec3(0.0), vec3(0.0), 0.0, false);
-    LobeProbabilities p = lobeProbabilities(b, wo.z);
-    if (p.reflection + p.diffuse + p.transmission == 0.0)
+    LobeProbabilities p = lobeProbabilities(b, wo);
+    if (p.reflection + p.diffuse + p.transmission + p.translucent + p.sheen + p.clearcoat == 0.0)
         return kAbsorbed;
-    bool diffuse = !hasFeature(kFeatureSpecular) || choice < p.diffuse;
-    bool reflection = !diffuse && (choice < p.diffuse + p.reflection || p.transmission == 0.0);
-    if (!diffuse && b.smooth_specular)
-        return p.reflection == 0.0 && reflection ? kAbsorbed : deltaSample(b, p, wo, reflection);
-
-    vec3 wi;
-    if (diffuse)
-    {
-        wi = cosineDirection(u);
-    }
-    else
-    {
-        vec3 h = sampleVisibleNormal(wo, b.alpha, u);
-        wi = reflect(-wo, h);
-        if (reflection || b.thin)
-        {
-            if (wi.z <= 0.0)
-                return kAbsorbed;
-            wi.z = reflection ? wi.z : -wi.z;
-        }
-        else
-        {
-            wi = refract(-wo, h, 1.0 / b.eta);
-            if (wi.z >= 0.0) // no refraction, or it comes out on the wrong side
-                return kAbsorbed;
-        }
-    }
+    uint lobe = chooseLobe(b, p, choice);
+    if (lobe == kClearcoatLobe && b.smooth_clearcoat)
+        return clearcoatMirror(b, p, wo);
+    if (lobe >= kReflectionLobe && b.smooth_specular)
+        return deltaSample(b, p, wo, lobe == kReflectionLobe);
+    vec3 wi = sampleLobe(b, lobe, wo, u);
+    if (wi.z == 0.0)
+        return kAbsorbed;
     BsdfValue f = evaluateBsdf(b, wo, wi);
     if (f.pdf <= 0.0)
         return kAbsorbed;
     vec3 diffuse_weight = f.diffuse * abs(wi.z) / f.pdf;
-    return BsdfSample(wi, (f.diffuse + f.specular) * abs(wi.z) / f.pdf, diffuse_weight, f.pdf, false);
-}
-
-/// Whether any lobe can be evaluated for a given direction, that is: whether light sampling makes sense.
-bool hasDensity(Bsdf b)
-{
-    return !b.smooth_specular || ((1.0 - b.metallic) * (1.0 - b.transmission) > 0.0 && b.base_color != vec3(0.0));
+    return BsdfSample(wi, (f.diffuse + f.specular) * abs(wi.z) / f.pdf, diffuse_weight, f.pdf, false,
+                      lobe == kTransmissionLobe && !b.thin);
 }
 
 #endif

@@ -61,8 +61,8 @@ Incident cutLight(vec3 x, vec3 n, uint random)
     uint chosen = reservoir.chosen;
     if (chosen == kNone || !isSeen(loadCutNode(chosen), x, n, random))
         return Incident(vec3(0.0), -n, vec3(0.0));
-    vec3 color = loadCutNode(chosen).irradiance, spoken = color * (reservoir.sum / max(luminance(color), 1e-30));
-    return Incident(is_sure ? sum : spoken, unpackNormal(directions[chosen]), spoken);
+    vec3 color = loadCutNode(chosen).irradiance, in_its_color = color * (reservoir.sum / max(luminance(color), 1e-30));
+    return Incident(is_sure ? sum : in_its_color, unpackNormal(directions[chosen]), in_its_color);
 }
 
 #endif

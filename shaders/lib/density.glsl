@@ -107,7 +107,7 @@ DensityEstimate estimateIrradiance(vec3 x, vec3 n, uint photon_count, uint wante
 Incident densityLight(vec3 x, vec3 n, uint photon_count, uint wanted, float radius2, float guess2, uint random)
 {
     DensityEstimate estimate = estimateIrradiance(x, n, photon_count, wanted, radius2, guess2);
-    Reservoir speaker = Reservoir(random, 0.0, kNone);
+    Reservoir reservoir = Reservoir(random, 0.0, kNone);
     uint first, end;
     beginRanges(photon_count);
     while (nextRange(x, estimate.radius2, first, end))
@@ -115,12 +115,12 @@ Incident densityLight(vec3 x, vec3 n, uint photon_count, uint wanted, float radi
         {
             float d2 = photonDistance2(loadPhoton(i), x, n);
             if (d2 < estimate.radius2)
-                offer(speaker, luminance(loadPhoton(i).power) * square(1.0 - d2 / estimate.radius2), i);
+                offer(reservoir, luminance(loadPhoton(i).power) * square(1.0 - d2 / estimate.radius2), i);
         }
-    if (speaker.chosen == kNone)
+    if (reservoir.chosen == kNone)
         return Incident(estimate.irradiance, -n, estimate.irradiance);
-    vec3 color = loadPhoton(speaker.chosen).power;
-    return Incident(estimate.irradiance, unpackNormal(loadPhoton(speaker.chosen).direction),
+    vec3 color = loadPhoton(reservoir.chosen).power;
+    return Incident(estimate.irradiance, unpackNormal(loadPhoton(reservoir.chosen).direction),
                     color * (luminance(estimate.irradiance) / max(luminance(color), 1e-30)));
 }
 

@@ -7,16 +7,24 @@
 
 const float kLeastAlpha = 0.25; // one direction stands for all that light comes from: a lobe no sharper than that
 
-/// What a surface sends towards wo of the light that photons brought (Jensen 1996).
-vec3 reflectedLight(Bsdf b, mat3 frame, vec3 wo, Incident light)
+/// The same with lobes wide enough for that.
+Bsdf widened(Bsdf b)
 {
-    vec3 wi = -light.direction * frame;
+    b.alpha = max(b.alpha, kLeastAlpha);
+    b.stretched = max(b.stretched, kLeastAlpha);
+    b.clearcoat_alpha = max(b.clearcoat_alpha, kLeastAlpha);
+    return b;
+}
+
+/// What a surface sends towards where a path came from of the light that photons brought (Jensen 1996).
+vec3 reflectedLight(PathVertex v, Incident light)
+{
+    Bsdf b = v.bsdf, wide = widened(b);
+    vec3 wi = -light.direction * v.frame;
     wi.z = max(wi.z, 0.05); // the shading normal of the photon's place was another
-    Bsdf wide = b;
-    wide.alpha = max(b.alpha, kLeastAlpha);
-    BsdfValue f = evaluateBsdf(wide, wo, normalize(wi));
-    vec3 kept = wide.alpha == b.alpha ? vec3(1.0) : glossyReflectance(b, wo.z) / max(glossyReflectance(wide, wo.z), vec3(1e-6));
-    return f.diffuse * light.irradiance + f.specular * kept * light.spoken;
+    BsdfValue f = evaluateBsdf(wide, v.wo, normalize(wi));
+    vec3 kept = sharpestAlpha(b) >= kLeastAlpha ? vec3(1.0) : glossyReflectance(b, v.wo.z) / max(glossyReflectance(wide, v.wo.z), vec3(1e-6));
+    return f.diffuse * light.irradiance + f.specular * kept * light.in_its_color;
 }
 
 struct Link
@@ -39,31 +47,32 @@ Link followLink(Ray ray, Hit hit, inout GatherState state, Sampler sampler_, boo
             link.radiance = state.throughput * environmentRadiance(ray.direction);
         return link;
     }
-    Surface s = surfaceAt(ray, hit);
-    SurfaceMaterial m = materialAt(s);
-    if ((m.flags & kMaterialUnlit) != 0u)
+    PathVertex v = vertexAt(ray, hit);
+    Surface s = v.surface;
+    if (isUnlit(v))
         return link;
-    state.throughput *= mediumTransmittance(crossedMedium(state.medium, s, m), hit.t);
+    state.throughput *= transmittanceTo(v, state.medium, hit.t);
     if (counts && emits(s))
-        link.radiance = state.throughput * m.emission;
-    Bsdf b = bsdfAt(m, s.front);
-    mat3 frame = frameAround(s.normal);
-    vec3 wo = -ray.direction * frame;
-    LobeProbabilities p = lobeProbabilities(b, wo.z);
+        link.radiance = state.throughput * v.material.emission;
     uvec2 bits = nextBits(sampler_);
     float choice = toUnitFloat(bits.x);
-    if (!b.smooth_specular || choice < p.diffuse)
+    disperse(v, state.throughput, toUnitFloat(hash(bits.y, 1u)));
+    Bsdf b = v.bsdf;
+    LobeProbabilities p = lobeProbabilities(b, v.wo);
+    float scattered = p.diffuse + glossyProbability(b, p);
+    if (!hasDeltaLobe(b) || choice < scattered)
     {
-        Incident light = lightAt(s.position, s.geometric_normal, bits.y);
-        link.radiance += state.throughput * reflectedLight(b, frame, wo, light) / (b.smooth_specular ? p.diffuse : 1.0);
+        vec3 reflected = reflectedLight(v, lightAt(s.position, s.geometric_normal, bits.y));
+        if (isTranslucent(b))
+            reflected += diffuseTransmittance(b, v.wo.z) * kInvPi * lightAt(s.position, -s.geometric_normal, bits.y).irradiance;
+        link.radiance += state.throughput * reflected / (hasDeltaLobe(b) ? scattered : 1.0);
         return link;
     }
-    BsdfSample next = sampleBsdf(b, wo, choice, vec2(0.5));
-    vec3 wi = frame * next.wi;
+    BsdfSample next = sampleBsdf(b, v.wo, choice, vec2(0.5));
+    vec3 wi = v.frame * next.wi;
     if (next.weight == vec3(0.0) || !sidesAgree(s, wi, next.wi.z))
         return link;
-    if (next.wi.z < 0.0 && !next.passed)
-        state.medium = s.front && enclosesMedium(s, m) ? s.material : kNone;
+    state.medium = mediumAfter(v, next, state.medium);
     state.throughput *= next.weight;
     state.specular += uint(!next.passed);
     link.goes_on = true;

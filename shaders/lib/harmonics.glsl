@@ -15,11 +15,13 @@ vec4[4] harmonicBasis(vec3 d)
                    vec4(r38 * x * (5.0 * z2 - 1.0), 0.5 * r15 * z * across, r58 * x * (x * x - 3.0 * y * y), 0.0));
 }
 
-/// Share of a surface's reflection that is from harmonics where samples reach it. None where something shines through; and
-/// next to none where hardly anything is diffuse, for there are no samples on such surfaces.
+/// Share of a surface's reflection that is from harmonics where samples reach it. None where something shines through or the
+/// lobe is not the one round lobe that they know; and next to none where hardly anything is diffuse, for there are no samples
+/// on such surfaces.
 float harmonicShare(Bsdf b)
 {
-    if (!hasFeature(kFeatureSpecular) || b.smooth_specular || b.transmission > 0.0)
+    if (!hasFeature(kFeatureSpecular) || b.smooth_specular || b.transmission > 0.0 || hasClearcoat(b) || hasSheen(b) || isTranslucent(b) ||
+        isIridescent(b) || alphas(b).x != alphas(b).y)
         return 0.0;
     return smoothstep(kHarmonicsFrom, kHarmonicsAlone, sqrt(b.alpha)) * min(1.0, 50.0 * maxComponent(diffuseColor(b)));
 }

@@ -5,7 +5,7 @@
 #include "shaders/lib/math.glsl"
 #include "shaders/lib/random.glsl"
 #include "shaders/lib/scene.glsl"
-#include "shaders/lib/surface.glsl"
+#include "shaders/lib/material.glsl"
 
 struct LightSample
 {
@@ -21,12 +21,14 @@ const LightSample kNoLight = LightSample(vec3(0.0, 0.0, 1.0), 0.0, vec3(0.0), ve
 vec2 directionToEnvironment(vec3 d)
 {
     // Drivers' acos is good to 1e-4 only, a tenth of a texel in a large map; their atan to a few ulps.
-    return vec2(0.5 + atan(d.z, d.x) * (0.5 * kInvPi), atan(length(d.xz), d.y) * kInvPi);
+    float u = 0.5 + atan(d.z, d.x) * (0.5 * kInvPi) + scene.environment_turn;
+    return vec2(u - floor(u), atan(length(d.xz), d.y) * kInvPi);
 }
 
 vec3 environmentToDirection(vec2 uv)
 {
-    float phi = (uv.x - 0.5) * 2.0 * kPi, theta = uv.y * kPi;
+    float u = uv.x - scene.environment_turn;
+    float phi = (u - floor(u) - 0.5) * 2.0 * kPi, theta = uv.y * kPi;
     return vec3(sin(theta) * cos(phi), cos(theta), sin(theta) * sin(phi));
 }
 

@@ -1,4 +1,5 @@
-// Steps that every path shares: frames at a vertex, absorption, the choice of sampler dimensions. Functions only.
+// Steps that every path shares: what it meets at a vertex, absorption, the ray that leaves, the choice of sampler dimensions.
+// Functions only.
 #ifndef LIB_PATH_GLSL
 #define LIB_PATH_GLSL
 #include "shaders/lib/bsdf.glsl"
@@ -28,6 +29,89 @@ bool enclosesMedium(Surface s, SurfaceMaterial m)
 uint crossedMedium(uint medium, Surface s, SurfaceMaterial m)
 {
     return medium == kNone && !s.front && enclosesMedium(s, m) ? s.material : medium;
+}
+
+struct PathVertex // where a path meets matter
+{
+    Surface surface;
+    SurfaceMaterial material;
+    Bsdf bsdf;
+    mat3 frame; // from local to world: z along the shading normal, x along the grain of an anisotropic surface
+    vec3 wo;    // local, towards where the path came from
+};
+
+/// x along the grain where the material has one, else anywhere across the normal.
+mat3 shadingFrame(Surface s, SurfaceMaterial m)
+{
+    if (hasFeature(kFeatureAnisotropy) && m.anisotropy > 0.0)
+    {
+        vec3 along = m.grain.x * s.tangent + m.grain.y * s.bitangent;
+        along -= s.normal * dot(s.normal, along);
+        if (dot(along, along) > 1e-8)
+        {
+            along = normalize(along);
+            return mat3(along, cross(s.normal, along), s.normal);
+        }
+    }
+    return frameAround(s.normal);
+}
+
+PathVertex vertexAt(Surface s)
+{
+    PathVertex v;
+    v.surface = s;
+    v.material = materialAt(s);
+    v.frame = shadingFrame(s, v.material);
+    v.wo = -s.direction * v.frame;
+    vec3 clearcoat_normal = vec3(0.0, 0.0, 1.0);
+    if (hasFeature(kFeatureClearcoat) && v.material.clearcoat > 0.0)
+        clearcoat_normal = clearcoatNormal(s) * v.frame;
+    v.bsdf = bsdfAt(v.material, s.front, clearcoat_normal);
+    return v;
+}
+/// @param width metres, of the ray where it ends
+PathVertex vertexAt(Ray ray, Hit hit, float width) { return vertexAt(surfaceAt(ray, hit, width)); }
+PathVertex vertexAt(Ray ray, Hit hit) { return vertexAt(surfaceAt(ray, hit)); }
+PathVertex vertexAt(ShadingPoint point) { return vertexAt(surfaceAt(point)); }
+
+bool isUnlit(PathVertex v) { return (v.material.flags & kMaterialUnlit) != 0u; }
+
+/// What the medium leaves of light over the ray's way to the vertex. @param medium that the path is in
+vec3 transmittanceTo(PathVertex v, uint medium, float distance)
+{
+    return mediumTransmittance(crossedMedium(medium, v.surface, v.material), distance);
+}
+
+/// The medium a path is in after it went on from the vertex.
+uint mediumAfter(PathVertex v, BsdfSample next, uint medium)
+{
+    if (next.wi.z >= 0.0 || next.passed)
+        return medium;
+    return v.surface.front && enclosesMedium(v.surface, v.material) ? v.surface.material : kNone;
+}
+
+/// The number by which a vertex picks a channel: a pair that neither lights nor lobes use (kVertexDimensions).
+float dispersionDraw(Sampler s)
+{
+    s.dimension += kLightPairs + 2u;
+    return nextPair(s).x;
+}
+
+/// Where a material disperses light, its path goes on for one channel alone: the one that it stands for already, else one
+/// picked by what it carries. Light that is not refracted is not concerned.
+/// @param carried throughput or power; @param random in [0, 1)
+void disperse(inout PathVertex v, vec3 carried, float random)
+{
+    if (!hasFeature(kFeatureDispersion) || v.material.dispersion == 0.0 || v.bsdf.thin || v.bsdf.transmission == 0.0)
+        return;
+    vec3 share = abs(carried) / max(dot(abs(carried), vec3(1.0)), 1e-30);
+    uint channel = random < share.x ? 0u : random < share.x + share.y || share.z == 0.0 ? 1u : 2u;
+    // Indices of red, green and blue (KHR_materials_dispersion): 20 / V = dispersion, the spread is (n - 1) / V.
+    float spread = 0.5 * (v.material.ior - 1.0) * 0.05 * v.material.dispersion;
+    float ior = max(v.material.ior + spread * (float(channel) - 1.0), 1.0);
+    v.bsdf.eta = v.surface.front ? ior : 1.0 / ior;
+    v.bsdf.dispersed = vec3(0.0);
+    v.bsdf.dispersed[channel] = 1.0 / max(share[channel], 1e-30);
 }
 
 /// A direction and the geometry must agree on which side it leaves: shading normals alone would leak light.

@@ -54,15 +54,26 @@ VertexAttributes loadVertex(uint index)
     return VertexAttributes(a.x, a.y, uintBitsToFloat(a.zw), uintBitsToFloat(b.xy), b.zw);
 }
 
+float materialFloat(uint index, uint word) { return uintBitsToFloat(texelFetch(materials, int(kMaterialRows * index + word / 4u))[word % 4u]); }
+vec3 materialVec3(uint index, uint word)
+{
+    return vec3(materialFloat(index, word), materialFloat(index, word + 1u), materialFloat(index, word + 2u));
+}
+uint materialUint(uint index, uint word) { return texelFetch(materials, int(kMaterialRows * index + word / 4u))[word % 4u]; }
+
 Material loadMaterial(uint index)
 {
-    int row = int(7u * index);
-    vec4 a = uintBitsToFloat(texelFetch(materials, row)), b = uintBitsToFloat(texelFetch(materials, row + 1));
-    vec4 c = uintBitsToFloat(texelFetch(materials, row + 2)), d = uintBitsToFloat(texelFetch(materials, row + 3));
-    vec4 e = uintBitsToFloat(texelFetch(materials, row + 4));
-    uvec4 f = texelFetch(materials, row + 5), g = texelFetch(materials, row + 6);
-    return Material(a.xyz, a.w, b.xyz, b.w, c.x, c.y, c.z, c.w, d.x, d.y, vec3(d.zw, e.x), e.yzw, f.x, f.y, f.z, f.w, g.x, g.y,
-                    g.z, g.w);
+#define float_FIELD materialFloat
+#define vec3_FIELD materialVec3
+#define NUMBER(word, type, name, default_, least, most, meaning) m.name = type##_FIELD(index, word);
+#define FLAGS(word, name, meaning) m.name = materialUint(index, word);
+#define TEXTURE(word, name, encoding, channels, feature, meaning) m.name = materialUint(index, word);
+    Material m;
+    MATERIAL_FIELDS(NUMBER, FLAGS, TEXTURE)
+    return m;
+#undef NUMBER
+#undef FLAGS
+#undef TEXTURE
 }
 
 Light loadLight(uint index)

@@ -1,4 +1,4 @@
-// From a hit to the surface and its material there. Functions only.
+// From a hit to the surface there. Functions only.
 #ifndef LIB_SURFACE_GLSL
 #define LIB_SURFACE_GLSL
 #include "shaders/lib/math.glsl"
@@ -16,6 +16,7 @@ struct Surface
     vec3 geometric_normal; // unit, on the side the ray came from
     vec3 normal;           // shading normal, unit, same side
     vec3 smooth_normal;    // the same before the normal map: what changes slowly along a surface
+    vec3 tangent, bitangent; // unit, across the smooth normal, along u and against v; 0 where no vertex has them
     bool front;            // the ray met the triangle's front
     float area;            // square metres, of the triangle
     vec2 uv0, uv1;
@@ -23,19 +24,6 @@ struct Surface
     vec4 color;            // vertex colour
     uint material;
     uint triangle;
-};
-
-struct SurfaceMaterial // the material's values at one point, textures applied
-{
-    vec3 base_color;
-    float metallic;
-    float roughness;
-    float transmission;
-    float specular;
-    vec3 specular_color;
-    float ior;
-    vec3 emission; // W/(m^2 sr)
-    uint flags;    // kMaterial*
 };
 
 vec3 interpolate(vec3 weights, vec3 a, vec3 b, vec3 c) { return weights.x * a + weights.y * b + weights.z * c; }
@@ -55,18 +43,26 @@ vec4 unpackTangent(uint bits)
     return vec4(octahedralToUnit(vec2(x, y)), (bits & 0x10000u) != 0u ? -1.0 : 1.0);
 }
 
-/// Shading normal bent by the material's normal map (glTF 2.0, 3.9.3).
-vec3 mappedNormal(vec3 normal, uvec3 v, vec3 weights, Surface s)
+/// Tangent and bitangent across a unit normal, from the vertices'; unchanged where these are none.
+void setTangents(inout Surface s, vec3 normal, uvec3 v, vec3 weights)
 {
     vec4 tangent = unpackTangent(loadVertex(v.x).tangent);
     vec3 t = interpolate(weights, tangent.xyz, unpackTangent(loadVertex(v.y).tangent).xyz, unpackTangent(loadVertex(v.z).tangent).xyz);
     t -= normal * dot(normal, t);
     if (dot(t, t) < 1e-12)
+        return;
+    s.tangent = normalize(t);
+    s.bitangent = tangent.w * cross(normal, s.tangent);
+}
+
+/// A normal bent by a normal map (glTF 2.0, 3.9.3). @param ref index into TextureRefs
+vec3 mappedNormal(vec3 normal, uint ref, float scale, Surface s)
+{
+    if (s.tangent == vec3(0.0))
         return normal;
-    t = normalize(t);
-    vec3 texel = sampleTexture(loadMaterial(s.material).normal_texture, s.uv0, s.uv1, s.footprints).xyz * 2.0 - 1.0;
-    texel.xy *= loadMaterial(s.material).normal_scale;
-    vec3 bent = texel.x * t + texel.y * tangent.w * cross(normal, t) + texel.z * normal;
+    vec3 texel = sampleNormal(ref, s.uv0, s.uv1, s.footprints);
+    texel.xy *= scale;
+    vec3 bent = texel.x * s.tangent + texel.y * s.bitangent + texel.z * normal;
     return dot(bent, bent) > 1e-12 ? normalize(bent) : normal;
 }
 
@@ -132,7 +128,31 @@ vec3 mirroringNormal(vec3 normal, vec3 n, vec3 wo)
 bool isMatte(uint material)
 {
     return !hasFeature(kFeatureSpecular) ||
-           (loadMaterial(material).specular == 0.0 && loadMaterial(material).metallic == 0.0 && loadMaterial(material).transmission == 0.0);
+           (loadMaterial(material).specular == 0.0 && loadMaterial(material).metallic == 0.0 && loadMaterial(material).transmission == 0.0 &&
+            !(hasFeature(kFeatureClearcoat) && loadMaterial(material).clearcoat > 0.0) &&
+            !(hasFeature(kFeatureSheen) && loadMaterial(material).sheen_color != vec3(0.0)));
+}
+
+/// A shading normal that mirrors the viewer's direction away from the surface, and faces the viewer.
+vec3 facingNormal(vec3 normal, Surface s)
+{
+    normal = mirroringNormal(normal, s.geometric_normal, -s.direction);
+    float facing = dot(normal, s.direction);
+    return facing > -1e-4 ? normalize(normal - (facing + 1e-4) * s.direction) : normal;
+}
+
+/// Normal of the clear coat: the smooth one, or that of the coat's own map (KHR_materials_clearcoat).
+vec3 clearcoatNormal(Surface s)
+{
+    uint ref = loadMaterial(s.material).clearcoat_normal_texture;
+    vec3 normal = s.smooth_normal;
+    if (hasFeature(kFeatureRareMaps) && ref != kNone)
+    {
+        float side = s.front ? 1.0 : -1.0; // tangents are those of the front
+        normal = side * mappedNormal(side * normal, ref, loadMaterial(s.material).clearcoat_normal_scale, s);
+        normal = onSideOf(s.geometric_normal, normal);
+    }
+    return facingNormal(normal, s);
 }
 
 /// Shading normals and the start of leaving rays. Expects all of s but them.
@@ -147,8 +167,11 @@ void setNormals(inout Surface s, vec3 v[3], uvec3 vertex, vec3 weights)
     vec3 normal = interpolate(weights, normals[0], normals[1], normals[2]);
     normal = dot(normal, normal) > 1e-12 ? onSideOf(winding, normalize(normal)) : winding;
     s.normal = normal;
+    s.tangent = s.bitangent = vec3(0.0);
+    if (hasFeature(kFeatureNormalMaps | kFeatureAnisotropy))
+        setTangents(s, normal, vertex, weights);
     if (hasFeature(kFeatureNormalMaps) && loadMaterial(s.material).normal_texture != kNone)
-        s.normal = onSideOf(winding, mappedNormal(normal, vertex, weights, s));
+        s.normal = onSideOf(winding, mappedNormal(normal, loadMaterial(s.material).normal_texture, loadMaterial(s.material).normal_scale, s));
     float side = s.front ? 1.0 : -1.0;
     s.normal *= side;
     s.smooth_normal = normal * side;
@@ -161,10 +184,7 @@ void setNormals(inout Surface s, vec3 v[3], uvec3 vertex, vec3 weights)
         s.back = max(s.back, height / max(-dot(s.geometric_normal, s.direction), 0.25));
     if (isMatte(s.material)) // matter without a mirror looks the same from everywhere
         return;
-    s.normal = mirroringNormal(s.normal, s.geometric_normal, -s.direction);
-    float facing = dot(s.normal, s.direction);
-    if (facing > -1e-4)
-        s.normal = normalize(s.normal - (facing + 1e-4) * s.direction);
+    s.normal = facingNormal(s.normal, s);
 }
 
 /// The surface at BvhTriangle `slot`, met along `direction` by a ray as wide as `width` metres.
@@ -219,56 +239,5 @@ Surface surfaceAt(Ray ray, Hit hit, float width)
     return s;
 }
 Surface surfaceAt(Ray ray, Hit hit) { return surfaceAt(ray, hit, 0.0); }
-
-vec3 surfaceEmission(uint material, vec2 uv0, vec2 uv1, vec2 footprints)
-{
-    vec3 emission = loadMaterial(material).emission;
-    uint ref = loadMaterial(material).emissive_texture;
-    if (hasFeature(kFeatureEmissiveMaps) && ref != kNone && emission != vec3(0.0))
-        emission *= sampleTexture(ref, uv0, uv1, footprints).rgb;
-    return emission;
-}
-
-/// glTF 2.0 metallic-roughness and the extensions of gpu_scene.h's Material, at one point.
-SurfaceMaterial materialAt(Surface s)
-{
-    SurfaceMaterial m;
-    m.flags = loadMaterial(s.material).flags;
-    m.base_color = loadMaterial(s.material).base_color * s.color.rgb;
-    m.metallic = loadMaterial(s.material).metallic;
-    m.roughness = loadMaterial(s.material).roughness;
-    m.transmission = loadMaterial(s.material).transmission;
-    m.specular = loadMaterial(s.material).specular;
-    m.specular_color = loadMaterial(s.material).specular_color;
-    m.ior = loadMaterial(s.material).ior;
-    m.emission = surfaceEmission(s.material, s.uv0, s.uv1, s.footprints);
-
-    uint ref = loadMaterial(s.material).base_color_texture;
-    // Coarse levels mix in the colours of texels that are cut away, where any are.
-    bool cut_away = (m.flags & (kMaterialAlphaMask | kMaterialAlphaBlend)) != 0u;
-    if (hasFeature(kFeatureBaseColorMaps) && ref != kNone)
-        m.base_color *= sampleTexture(ref, s.uv0, s.uv1, cut_away ? vec2(0.0) : s.footprints).rgb;
-    ref = loadMaterial(s.material).metallic_roughness_texture;
-    if (hasFeature(kFeatureMetallicRoughnessMaps) && ref != kNone)
-    {
-        vec4 texel = sampleTexture(ref, s.uv0, s.uv1, s.footprints);
-        m.roughness *= texel.g;
-        m.metallic *= texel.b;
-    }
-    if (!hasFeature(kFeatureRareMaps))
-        return m;
-    ref = loadMaterial(s.material).transmission_texture;
-    if (ref != kNone)
-        m.transmission *= sampleTexture(ref, s.uv0, s.uv1, s.footprints).r;
-    ref = loadMaterial(s.material).specular_texture;
-    if (ref != kNone)
-        m.specular *= sampleTexture(ref, s.uv0, s.uv1, s.footprints).a;
-    ref = loadMaterial(s.material).specular_color_texture;
-    if (ref != kNone)
-        m.specular_color *= sampleTexture(ref, s.uv0, s.uv1, s.footprints).rgb;
-    return m;
-}
-
-bool emits(Surface s) { return s.front || (loadMaterial(s.material).flags & kMaterialDoubleSided) != 0u; }
 
 #endif

@@ -85,8 +85,10 @@ vec3 thinTransmittance(Hit hit, vec3 direction)
     if (!kSceneHasThin || (loadBvhTriangle(hit.slot).flags & kTriangleThin) == 0u)
         return vec3(0.0);
     Surface s = surfaceAt(hit.slot, hit.barycentrics, direction);
-    Bsdf b = bsdfAt(materialAt(s), s.front);
-    return belowColor(b, -dot(s.normal, direction)) * b.transmission;
+    Bsdf b = bsdfAt(materialAt(s), s.front, vec3(0.0, 0.0, 1.0));
+    float cosine = -dot(s.normal, direction);
+    vec3 wo = vec3(sqrt(max(0.0, 1.0 - cosine * cosine)), 0.0, cosine);
+    return covered(b, wo, wo) * belowColor(b, cosine) * b.transmission;
 }
 
 /// What a translucent surface lets straight through: what it does not cover, and thin smooth transmission of the rest.

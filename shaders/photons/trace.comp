@@ -72,29 +72,31 @@ const float kAimedBounces = 0.1, kFarVertex = 8.0, kAimedRadius = 2.0; // the le
 
 /// One sample of the BSDF or of the cone towards the view (one-sample model, balance heuristic; Veach 1997, 9.2.4).
 /// @return whether it was aimed
-bool aimBounce(Surface s, Bsdf b, mat3 frame, vec3 wo, vec2 random, inout BsdfSample next)
+bool aimBounce(PathVertex v, vec2 random, inout BsdfSample next)
 {
-    vec3 to_focus = view_scale.focus - s.position;
+    vec3 to_focus = view_scale.focus - v.surface.position;
     float distance2 = dot(to_focus, to_focus), radius = kAimedRadius * view_scale.distance;
     if (distance2 < square(kFarVertex * view_scale.distance))
         return false;
     CausticTarget view = CausticTarget(view_scale.focus, radius);
-    float height = coneHeight(view, s.position);
+    float height = coneHeight(view, v.surface.position);
     vec3 axis = to_focus * inversesqrt(distance2);
     float pick = random.x / kAimedBounces;
     bool aimed = pick < 1.0;
     if (aimed)
-        next.wi = (frameAround(axis) * uniformCone(height, vec2(pick, random.y))) * frame;
+        next.wi = (frameAround(axis) * uniformCone(height, vec2(pick, random.y))) * v.frame;
     else if (next.pdf == 0.0) // a delta lobe is found by its own sample alone
     {
         next.weight /= 1.0 - kAimedBounces;
         return false;
     }
-    BsdfValue f = evaluateBsdf(b, wo, next.wi);
-    bool in_cone = dot(frame * next.wi, axis) >= 1.0 - height;
+    BsdfValue f = evaluateBsdf(v.bsdf, v.wo, next.wi);
+    bool in_cone = dot(v.frame * next.wi, axis) >= 1.0 - height;
     next.pdf = (1.0 - kAimedBounces) * f.pdf + (in_cone ? kAimedBounces / (2.0 * kPi * height) : 0.0);
     next.weight = next.pdf > 0.0 ? (f.diffuse + f.specular) * abs(next.wi.z) / next.pdf : vec3(0.0);
     next.passed = false;
+    if (aimed)
+        next.refracted = next.wi.z < 0.0 && !v.bsdf.thin && v.bsdf.transmission > 0.0;
     return aimed;
 }
 
@@ -102,31 +104,28 @@ bool aimBounce(Surface s, Bsdf b, mat3 frame, vec3 wo, vec2 random, inout BsdfSa
 bool scatter(uint path, uint event, Hit hit, inout PathState state, inout Ray ray)
 {
     vec3 direction = ray.direction;
-    Surface s = surfaceAt(ray, hit);
-    SurfaceMaterial m = materialAt(s);
-    if ((m.flags & kMaterialUnlit) != 0u)
+    PathVertex v = vertexAt(ray, hit);
+    Surface s = v.surface;
+    if (isUnlit(v))
         return false;
-    state.power *= mediumTransmittance(crossedMedium(state.medium, s, m), hit.t);
-    Bsdf b = bsdfAt(m, s.front);
-    if (hasDensity(b))
+    state.power *= transmittanceTo(v, state.medium, hit.t);
+    if (hasDensity(v.bsdf))
         storePhoton(path, state, s, direction);
 
-    mat3 frame = frameAround(s.normal);
-    vec3 wo = -direction * frame;
     Sampler sampler_ = Sampler(params.seed, params.first_path + path, kEmitDimensions + event * kScatterDimensions);
-    vec2 u = nextPair(sampler_), choice = nextPair(sampler_);
-    BsdfSample next = sampleBsdf(b, wo, choice.x, u);
-    bool aimed = params.caustic == 0u && aimBounce(s, b, frame, wo, nextPair(sampler_), next);
-    vec3 wi = frame * next.wi;
+    vec2 u = nextPair(sampler_), choice = nextPair(sampler_), aim = nextPair(sampler_);
+    disperse(v, state.power, aim.y);
+    BsdfSample next = sampleBsdf(v.bsdf, v.wo, choice.x, u);
+    bool aimed = params.caustic == 0u && aimBounce(v, aim, next);
+    vec3 wi = v.frame * next.wi;
     bool delta = next.pdf == 0.0;
     // A caustic path ends where light scatters; a smooth layer over a diffuse base may still reflect it on.
     if (next.weight == vec3(0.0) || !geometryAgrees(s, wi, next.wi.z) || (params.caustic != 0u && !delta) ||
         state.stored >= params.bounce_limit)
         return false;
-    bool entered = next.wi.z < 0.0 && !next.passed;
     vec3 weight = next.weight;
-    if (entered && !b.thin) // power is not squeezed into a smaller solid angle as radiance is
-        weight *= b.eta * b.eta;
+    if (next.refracted) // power is not squeezed into a smaller solid angle as radiance is
+        weight *= v.bsdf.eta * v.bsdf.eta;
     // The adjoint of what a path from the eye does there (Veach 1997, 5.3).
     weight *= shadingGain(s, direction) / max(shadingGain(s, wi), 1.0 / kMostGain);
     vec3 scattered = state.power * weight;
@@ -135,8 +134,7 @@ bool scatter(uint path, uint event, Hit hit, inout PathState state, inout Ray ra
     if (choice.y >= survival)
         return false;
     state.power = scattered / survival;
-    if (entered)
-        state.medium = s.front && enclosesMedium(s, m) ? s.material : kNone;
+    state.medium = mediumAfter(v, next, state.medium);
     state.specular += uint(delta && !next.passed);
     ray = leavingRay(s, wi, kInfinity, path);
     return true;

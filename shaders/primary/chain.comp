@@ -30,22 +30,22 @@ vec3 meetSurface(Ray ray, Hit hit, inout ShadingPoint point, inout DiffusePoint 
     uint medium = point.slot;
     point.slot = kNone;
     point.width += params.spread * hit.t;
-    Surface s = surfaceAt(ray, hit, point.width);
-    SurfaceMaterial m = materialAt(s);
-    vec3 throughput = point.throughput * mediumTransmittance(crossedMedium(medium, s, m), hit.t);
-    if ((m.flags & kMaterialUnlit) != 0u)
-        return throughput * m.base_color;
-    vec3 light = emits(s) ? throughput * m.emission : vec3(0.0);
+    PathVertex v = vertexAt(ray, hit, point.width);
+    Surface s = v.surface;
+    vec3 throughput = point.throughput * transmittanceTo(v, medium, hit.t);
+    if (isUnlit(v))
+        return throughput * v.material.base_color;
+    vec3 light = emits(s) ? throughput * v.material.emission : vec3(0.0);
 
-    Bsdf b = bsdfAt(m, s.front);
-    mat3 frame = frameAround(s.normal);
-    vec3 wo = -direction * frame;
     Sampler sampler_ = vertexSampler(ray.path, params.depth, params.pixel_count, params.first_sample, params.seed);
-    LobeProbabilities p = lobeProbabilities(b, wo.z);
-    float choice = nextPair(sampler_).x;
-    if (!b.smooth_specular || choice < p.diffuse)
+    vec2 random = nextPair(sampler_);
+    disperse(v, throughput, random.y);
+    Bsdf b = v.bsdf;
+    LobeProbabilities p = lobeProbabilities(b, v.wo);
+    float scattered = p.diffuse + glossyProbability(b, p);
+    if (!hasDeltaLobe(b) || random.x < scattered)
     {
-        throughput /= b.smooth_specular ? p.diffuse : 1.0;
+        throughput /= hasDeltaLobe(b) ? scattered : 1.0;
         vec3 reflectance = throughput * diffuseReflectance(b, max(0.0, -dot(s.normal, direction)));
         point = ShadingPoint(s.position, hit.slot, direction, params.depth, throughput, hit.barycentrics, point.width,
                              s.back);
@@ -54,12 +54,11 @@ vec3 meetSurface(Ray ray, Hit hit, inout ShadingPoint point, inout DiffusePoint 
         diffuse = DiffusePoint(s.position - min(clearance(s), s.back) * direction, unitToOctahedral(s.smooth_normal), reflectance);
         return light;
     }
-    BsdfSample next = sampleBsdf(b, wo, choice, vec2(0.5));
-    vec3 wi = frame * next.wi;
+    BsdfSample next = sampleBsdf(b, v.wo, random.x, vec2(0.5));
+    vec3 wi = v.frame * next.wi;
     if (params.depth >= params.depth_limit || next.weight == vec3(0.0) || !sidesAgree(s, wi, next.wi.z))
         return light;
-    if (next.wi.z < 0.0 && !next.passed)
-        medium = s.front && enclosesMedium(s, m) ? s.material : kNone;
+    medium = mediumAfter(v, next, medium);
     point.throughput = throughput * next.weight;
     point.slot = medium;
     next_rays[atomicAdd(next_queue.count, 1u)] = leavingRay(s, wi, kInfinity, ray.path);
@@ -74,6 +73,8 @@ void main()
     Ray ray = loadRay(i);
     Hit hit = loadHit(i);
     ShadingPoint point = ShadingPoint(vec3(0.0), kNone, ray.direction, params.depth, vec3(1.0), vec2(0.0), params.width, 0.0);
+    if (params.depth == 0u)
+        point.width += params.spread * length(ray.origin - params.eye); // the near plane is where it starts
     vec3 before = vec3(0.0);
     if (params.depth > 0u)
     {

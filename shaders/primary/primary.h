@@ -15,11 +15,13 @@ struct CameraParams // a ray through image position (x, y) in [-1,1]^2, y up, go
     uint width; // pixels
     uint height;
     uint orthographic; // 1: parallel rays from position + x right + y up
+    float near_plane;  // metres along forward to the plane that rays start in
+    float far_plane;   // metres along forward to the plane that they end in; 0: they do not
     uint sample_count; // rays a pixel in this dispatch; path = sample * width * height + pixel
     uint first_sample; // index of the first of them in the pixel's sequence
     uint seed;
 };
-GPU_SIZE(CameraParams, 72);
+GPU_SIZE(CameraParams, 80);
 
 struct ChainParams
 {
@@ -28,10 +30,11 @@ struct ChainParams
     uint pixel_count;
     uint first_sample;
     uint seed;
-    float width;  // metres, of a camera ray where it starts
+    float width;  // metres, of a camera ray at the eye
     float spread; // by which it widens a metre
+    vec3 eye;     // the camera's position
 };
-GPU_SIZE(ChainParams, 28);
+GPU_SIZE(ChainParams, 40);
 
 struct ShadingPoint // where a pixel's light is to be found: first vertex after E S* that scatters
 {

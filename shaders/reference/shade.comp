@@ -68,26 +68,29 @@ void add(uint path, vec3 found, uint stage)
 }
 
 /// Emitted light that arrives along the path, weighted against the shadow rays that could have found it too.
-vec3 emittedLight(Surface s, SurfaceMaterial m, vec3 direction, PathState state)
+vec3 emittedLight(PathVertex v, PathState state)
 {
-    if (m.emission == vec3(0.0) || !emits(s))
+    Surface s = v.surface;
+    vec3 emission = v.material.emission;
+    if (emission == vec3(0.0) || !emits(s))
         return vec3(0.0);
     uint light = loadTriangle(s.triangle).light;
     if (state.pdf == 0.0 || light == kNone)
-        return m.emission;
-    float cosine = abs(dot(s.geometric_normal, direction));
-    return m.emission * misWeight(state.pdf, trianglePdf(light, s.area, state.travelled, cosine));
+        return emission;
+    float cosine = abs(dot(s.geometric_normal, s.direction));
+    return emission * misWeight(state.pdf, trianglePdf(light, s.area, state.travelled, cosine));
 }
 
-void sendShadowRay(Surface s, Bsdf b, mat3 frame, vec3 wo, PathState state, uint path, inout Sampler sampler_)
+void sendShadowRay(PathVertex v, PathState state, uint path, inout Sampler sampler_)
 {
+    Surface s = v.surface;
     LightSample light = sampleLight(s.position, sampler_);
-    vec3 wi = light.wi * frame;
-    if (light.weight == vec3(0.0) || !hasDensity(b) || !sidesAgree(s, light.wi, wi.z))
+    vec3 wi = light.wi * v.frame;
+    if (light.weight == vec3(0.0) || !hasDensity(v.bsdf) || !sidesAgree(s, light.wi, wi.z))
         return;
     if (!counts(stageAfter(state.stage, false)))
         return;
-    BsdfValue f = evaluateBsdf(b, wo, wi);
+    BsdfValue f = evaluateBsdf(v.bsdf, v.wo, wi);
     vec3 carried = countedThroughput(state) * (f.diffuse + f.specular) * abs(wi.z) * light.weight;
     if (light.pdf > 0.0)
         carried *= misWeight(light.pdf, f.pdf);
@@ -96,17 +99,16 @@ void sendShadowRay(Surface s, Bsdf b, mat3 frame, vec3 wo, PathState state, uint
     shadow_rays[atomicAdd(shadow_queue.count, 1u)] = ShadowRay(shadowRay(s, light, path), carried);
 }
 
-void continuePath(Surface s, SurfaceMaterial m, Bsdf b, mat3 frame, vec3 wo, PathState state, uint path, inout Sampler sampler_)
+void continuePath(PathVertex v, PathState state, uint path, inout Sampler sampler_)
 {
     vec2 u = nextPair(sampler_);
     vec2 choice = nextPair(sampler_);
-    BsdfSample next = sampleBsdf(b, wo, choice.x, u);
-    vec3 wi = frame * next.wi;
-    if (next.weight == vec3(0.0) || !sidesAgree(s, wi, next.wi.z))
+    BsdfSample next = sampleBsdf(v.bsdf, v.wo, choice.x, u);
+    vec3 wi = v.frame * next.wi;
+    if (next.weight == vec3(0.0) || !sidesAgree(v.surface, wi, next.wi.z))
         return;
     state.throughput *= next.weight;
-    if (next.wi.z < 0.0 && !next.passed)
-        state.medium = s.front && enclosesMedium(s, m) ? s.material : kNone;
+    state.medium = mediumAfter(v, next, state.medium);
     if (params.depth >= kRouletteDepth)
     {
         // Radiance in a denser medium is smaller for as long as the path stays in it only: that is no reason to end it.
@@ -129,7 +131,7 @@ void continuePath(Surface s, SurfaceMaterial m, Bsdf b, mat3 frame, vec3 wo, Pat
         state.travelled = 0.0;
     }
     states[path] = state;
-    next_rays[atomicAdd(next_queue.count, 1u)] = leavingRay(s, wi, kInfinity, path);
+    next_rays[atomicAdd(next_queue.count, 1u)] = leavingRay(v.surface, wi, kInfinity, path);
 }
 
 void main()
@@ -148,23 +150,21 @@ void main()
         return;
     }
 
-    Surface s = surfaceAt(rays[i], hit);
-    SurfaceMaterial m = materialAt(s);
-    state.throughput *= mediumTransmittance(crossedMedium(state.medium, s, m), hit.t);
+    PathVertex v = vertexAt(rays[i], hit);
+    state.throughput *= transmittanceTo(v, state.medium, hit.t);
     state.travelled += hit.t;
-    if ((m.flags & kMaterialUnlit) != 0u) // a picture of itself for the eye, black for everything else
+    if (isUnlit(v)) // a picture of itself for the eye, black for everything else
     {
-        add(path, state.stage == kStageEye ? countedThroughput(state) * m.base_color : vec3(0.0), state.stage);
+        add(path, state.stage == kStageEye ? countedThroughput(state) * v.material.base_color : vec3(0.0), state.stage);
         return;
     }
-    add(path, countedThroughput(state) * emittedLight(s, m, direction, state), state.stage);
+    add(path, countedThroughput(state) * emittedLight(v, state), state.stage);
     if (params.depth + 1u >= params.depth_limit)
         return;
 
-    Bsdf b = bsdfAt(m, s.front);
-    mat3 frame = frameAround(s.normal);
-    vec3 wo = -direction * frame;
     Sampler sampler_ = vertexSampler(path, params.depth, params.pixel_count, params.first_sample, params.seed);
-    sendShadowRay(s, b, frame, wo, state, path, sampler_);
-    continuePath(s, m, b, frame, wo, state, path, sampler_);
+    if (hasFeature(kFeatureDispersion))
+        disperse(v, state.throughput, dispersionDraw(sampler_));
+    sendShadowRay(v, state, path, sampler_);
+    continuePath(v, state, path, sampler_);
 }

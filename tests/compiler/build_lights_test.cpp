@@ -2,6 +2,7 @@
 #include "compiler/build_lights.h"
 #include "compiler/environment.h"
 #include "compiler/vector_math.h"
+#include "format/material.h"
 
 #include <gtest/gtest.h>
 
@@ -14,11 +15,8 @@ constexpr double kPi = std::numbers::pi;
 
 gpu::Material material()
 {
-    gpu::Material m{};
-    m.roughness = 1;
-    m.ior = 1.5f;
-    m.base_color_texture = m.metallic_roughness_texture = m.normal_texture = m.emissive_texture = gpu::kNone;
-    m.transmission_texture = m.specular_texture = m.specular_color_texture = gpu::kNone;
+    gpu::Material m = package::defaultMaterial();
+    m.metallic = 0;
     return m;
 }
 

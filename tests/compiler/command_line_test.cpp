@@ -1,34 +1,17 @@
 #include "compiler/camera_views.h"
+#include "format/package_read.h"
 #include "tests/compiler/gltf_builder.h"
+#include "tests/compiler/program_run.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <sys/wait.h>
-
-#include <array>
-#include <cstdio>
+#include <algorithm>
+#include <fstream>
+#include <numbers>
 
 namespace
 {
-struct ProgramRun
-{
-    int code = -1;
-    std::string output; // stdout and stderr
-};
-
-ProgramRun run(const std::string& arguments)
-{
-    ProgramRun result;
-    FILE* pipe = popen(fmt::format("'{}' {} 2>&1", LUMICUT_COMPILE_PROGRAM, arguments).c_str(), "r");
-    std::array<char, 4096> buffer;
-    for (size_t n; (n = fread(buffer.data(), 1, buffer.size(), pipe)) > 0;)
-        result.output.append(buffer.data(), n);
-    const int status = pclose(pipe);
-    result.code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-    return result;
-}
-
 class CommandLine : public testing::Test
 {
 protected:
@@ -47,7 +30,7 @@ protected:
 TEST_F(CommandLine, CompilesBesideTheInputByDefault)
 {
     const ProgramRun r =
-        run(scene() + " --sun 0,-1,0,100 --view a=0,0,3,0,0,0,40 --compress zstd:1 --report " + path("r.json"));
+        runCompiler(scene() + " --sun 0,-1,0,100 --view a=0,0,3,0,0,0,40 --compress zstd:1 --report " + path("r.json"));
     EXPECT_EQ(r.code, 0) << r.output;
     EXPECT_TRUE(std::filesystem::exists(folder_ / "scene.lumi"));
     EXPECT_TRUE(std::filesystem::exists(folder_ / "r.json"));
@@ -55,17 +38,54 @@ TEST_F(CommandLine, CompilesBesideTheInputByDefault)
     EXPECT_EQ(r.output.find('\x1b'), std::string::npos);
 }
 
+TEST_F(CommandLine, ListPrintsWhatTheFileOffersAndCompilesNothing)
+{
+    const ProgramRun text = runCompiler("--list " + scene());
+    EXPECT_EQ(text.code, 0) << text.output;
+    EXPECT_TRUE(text.output.starts_with("scenes     1\n")) << text.output;
+    const ProgramRun json = runCompiler("--list --json " + scene());
+    EXPECT_EQ(json.code, 0) << json.output;
+    EXPECT_TRUE(json.output.starts_with("{")) << json.output;
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "scene.lumi"));
+    EXPECT_EQ(runCompiler("--json " + scene()).code, 1);
+    EXPECT_EQ(runCompiler("--list " + path("gone.gltf")).code, 2);
+    EXPECT_EQ(runCompiler(scene() + " --variant blue").code, 1);
+    EXPECT_EQ(runCompiler(scene() + " --scene 1").code, 1);
+    EXPECT_EQ(runCompiler(scene() + " --scene 0").code, 0);
+}
+
 TEST_F(CommandLine, QuietPrintsNothing)
 {
-    const ProgramRun r = run(scene() + " -q");
+    const ProgramRun r = runCompiler(scene() + " -q");
     EXPECT_EQ(r.code, 0);
     EXPECT_EQ(r.output, "");
 }
 
+TEST_F(CommandLine, EnvironmentOptionsAreRecordedAndItsErrorsNameIt)
+{
+    const std::string pixels(4 * 8, char(130));
+    std::ofstream(folder_ / "sky.hdr", std::ios::binary) << "#?RADIANCE\n\n-Y 2 +X 4\n" << pixels;
+    const ProgramRun made = runCompiler(scene() + " --env " + path("sky.hdr") + " --env-rotate -450 --env-scale 0.5");
+    ASSERT_EQ(made.code, 0) << made.output;
+    const auto package = package::Package::open(folder_ / "scene.lumi");
+    ASSERT_TRUE(package) << package.error().message;
+    EXPECT_FLOAT_EQ(package->meta().environment()->rotation(), -float(std::numbers::pi) / 2);
+    EXPECT_EQ(package->environmentMap()[3].y, 0.5f * 130 / 64); // 130 x 2^(130 - 136)
+    std::vector<std::string> options;
+    for (const auto* option : *package->meta().provenance()->options())
+        options.push_back(option->str());
+    EXPECT_EQ(options, (std::vector<std::string>{"--env sky.hdr", "--env-rotate -450", "--env-scale 0.5"}));
+
+    std::ofstream(folder_ / "cut.hdr", std::ios::binary) << "#?RADIANCE\n\n-Y 2 +X 4\n" << pixels.substr(1);
+    const ProgramRun refused = runCompiler(scene() + " --env " + path("cut.hdr"));
+    EXPECT_EQ(refused.code, 3);
+    EXPECT_TRUE(refused.output.find("cut.hdr: error: the HDR image is damaged in line 2 of 2") != std::string::npos) << refused.output;
+}
+
 TEST_F(CommandLine, VersionAndHelpSucceed)
 {
-    EXPECT_EQ(run("--version").output, "lumicut-compile " LUMICUT_VERSION "\n");
-    EXPECT_EQ(run("--help").code, 0);
+    EXPECT_EQ(runCompiler("--version").output, "lumicut-compile " LUMICUT_VERSION "\n");
+    EXPECT_EQ(runCompiler("--help").code, 0);
 }
 
 TEST_F(CommandLine, MistakesInArgumentsAreUsageErrors)
@@ -76,6 +96,11 @@ TEST_F(CommandLine, MistakesInArgumentsAreUsageErrors)
                                             scene() + " --sun 1,2,3",
                                             scene() + " --sun 0,0,0,1",
                                             scene() + " --sun 1,2,3,x",
+                                            scene() + " --env-rotate 90",
+                                            scene() + " --env sky.exr --env-rotate north",
+                                            scene() + " --env sky.exr --env-rotate 1e999",
+                                            scene() + " --env sky.exr --env-scale 0",
+                                            scene() + " --env sky.exr --env-scale -1",
                                             scene() + " --view a=1,2",
                                             scene() + " --view a=0,0,0,0,0,0,40",
                                             scene() + " --view a=0,0,1,0,0,0,180",
@@ -84,7 +109,7 @@ TEST_F(CommandLine, MistakesInArgumentsAreUsageErrors)
                                             scene() + " --env sky.png",
                                             "scene.obj"};
     for (const std::string& arguments : mistakes)
-        EXPECT_EQ(run(arguments).code, 1) << arguments;
+        EXPECT_EQ(runCompiler(arguments).code, 1) << arguments;
     EXPECT_FALSE(std::filesystem::exists(folder_ / "scene.lumi"));
 }
 
@@ -95,7 +120,7 @@ TEST_F(CommandLine, FilesThatCannotBeReadOrWrittenAreInputOutputErrors)
          {path("gone.gltf"), path("folder.gltf"), scene() + " -o " + path("none/out.lumi"),
           scene() + " --env " + path("gone.exr")})
     {
-        const ProgramRun r = run(arguments);
+        const ProgramRun r = runCompiler(arguments);
         EXPECT_EQ(r.code, 2) << arguments << "\n" << r.output;
         EXPECT_NE(r.output.find(": error: "), std::string::npos) << r.output;
     }
@@ -111,7 +136,7 @@ TEST_F(CommandLine, AnEmptyFileAndAGlbCutInHalfAreInvalid)
     writeBytes(folder_ / "empty.glb", "", 0);
     for (const char* name : {"half.glb", "empty.glb"})
     {
-        const ProgramRun r = run(path(name) + " -q");
+        const ProgramRun r = runCompiler(path(name) + " -q");
         EXPECT_EQ(r.code, 3) << name;
         EXPECT_EQ(std::count(r.output.begin(), r.output.end(), '\n'), 1) << r.output;
     }

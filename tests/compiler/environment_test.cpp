@@ -1,27 +1,15 @@
-// Environment maps: files good and bad, and an importance grid that follows the filtered radiance.
+// Environment light: an importance grid that follows the filtered radiance.
 #include "compiler/environment.h"
 #include "compiler/vector_math.h"
 
-#include <ImfChannelList.h>
-#include <ImfFrameBuffer.h>
-#include <ImfHeader.h>
-#include <ImfOutputFile.h>
 #include <gtest/gtest.h>
 
-#include <fstream>
 #include <numbers>
 #include <random>
 
 namespace
 {
-namespace fs = std::filesystem;
-
 constexpr double kPi = std::numbers::pi;
-
-fs::path shared(const char* name)
-{
-    return fs::path(LUMICUT_SHARED_DIR) / "scenes" / name;
-}
 
 EnvironmentImage constant(uint32_t width, uint32_t height, float value)
 {
@@ -89,44 +77,6 @@ EnvironmentImage randomImage(uint32_t width, uint32_t height)
     }
     return image;
 }
-
-struct TemporaryFile
-{
-    fs::path path;
-    explicit TemporaryFile(const std::string& suffix)
-        : path(fs::temp_directory_path() / ("lumicut-env-" + std::to_string(getpid()) + suffix))
-    {
-    }
-    ~TemporaryFile()
-    {
-        std::error_code ignored;
-        fs::remove(path, ignored);
-    }
-};
-
-/// 3 x 2 texels, float, with a data window that does not start at 0.
-void writeExr(const fs::path& path, const std::vector<const char*>& channels, const std::vector<float>& values)
-{
-    Imf::Header header(Imath::Box2i({-1, 5}, {1, 6}), Imath::Box2i({-1, 5}, {1, 6}));
-    Imf::FrameBuffer frame;
-    for (size_t c = 0; c < channels.size(); ++c)
-    {
-        header.channels().insert(channels[c], Imf::Channel(Imf::FLOAT));
-        char* base = const_cast<char*>(reinterpret_cast<const char*>(values.data() + c * 6));
-        frame.insert(channels[c], Imf::Slice(Imf::FLOAT, base + 4 - 5 * 12, 4, 12));
-    }
-    Imf::OutputFile file(path.c_str(), header);
-    file.setFrameBuffer(frame);
-    file.writePixels(2);
-}
-
-void expectError(const fs::path& path, ExitCode code, const std::string& words)
-{
-    const auto image = loadEnvironment(path);
-    ASSERT_FALSE(image) << path;
-    EXPECT_EQ(image.error().code, code) << image.error().message;
-    EXPECT_NE(image.error().message.find(words), std::string::npos) << image.error().message;
-}
 } // namespace
 
 TEST(Importance, FollowsRadianceOnTheMapsOwnGrid)
@@ -184,114 +134,4 @@ TEST(DefaultSky, IsBlueAboveAndBrownBelow)
     EXPECT_LT(sky.texels.back().z, sky.texels.back().x);
     EXPECT_NEAR(length(defaultSun().direction), 1, 1e-6);
     EXPECT_LT(defaultSun().direction.y, 0);
-}
-
-TEST(LoadEnvironment, ReadsFloatExrWithAnOffsetWindow)
-{
-    const TemporaryFile file(".exr");
-    std::vector<float> values;
-    for (int i = 0; i < 18; ++i)
-        values.push_back(1.0001f + float(i)); // more digits than a half holds
-    values[3] = -2;
-    writeExr(file.path, {"R", "G", "B"}, values);
-    const auto image = loadEnvironment(file.path);
-    ASSERT_TRUE(image) << image.error().message;
-    ASSERT_EQ(image->width, 3u);
-    ASSERT_EQ(image->height, 2u);
-    EXPECT_EQ(image->texels[5].x, values[5]);
-    EXPECT_EQ(image->texels[0].y, values[6]);
-    EXPECT_EQ(image->texels[4].z, values[16]);
-    EXPECT_EQ(image->texels[3].x, 0) << "negative radiance becomes 0";
-}
-
-TEST(LoadEnvironment, ReadsLuminanceExrAsGrey)
-{
-    const TemporaryFile file(".exr");
-    writeExr(file.path, {"Y"}, {1, 2, 3, 4, 5, 6});
-    const auto image = loadEnvironment(file.path);
-    ASSERT_TRUE(image) << image.error().message;
-    EXPECT_EQ(image->texels[4].x, 5);
-    EXPECT_EQ(image->texels[4].z, 5);
-}
-
-TEST(LoadEnvironment, ExplainsWhatItCannotRead)
-{
-    expectError("/nowhere/sky.exr", ExitCode::kIo, "No such file");
-    expectError(fs::temp_directory_path() / "sky.png", ExitCode::kUnsupported, ".hdr");
-    const TemporaryFile hdr(".hdr");
-    std::ofstream(hdr.path) << "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 100000 +X 3\n";
-    expectError(hdr.path, ExitCode::kInvalid, "cannot be read");
-    const TemporaryFile exr(".exr");
-    std::ofstream(exr.path) << "not an exr";
-    expectError(exr.path, ExitCode::kInvalid, "cannot be read");
-    const TemporaryFile depth(".EXR");
-    writeExr(depth.path, {"Z"}, {1, 2, 3, 4, 5, 6});
-    expectError(depth.path, ExitCode::kInvalid, "channels R, G, B");
-}
-
-TEST(LoadEnvironment, ReadsRadianceHdr)
-{
-    const TemporaryFile file(".hdr");
-    const std::string rgbe = {char(128), 64, 32, char(129), 0, 0, 0, 0, 16, 16, 16, char(136), 1, 2, 3, char(137)};
-    std::ofstream(file.path, std::ios::binary) << "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 2\n" << rgbe;
-    const auto image = loadEnvironment(file.path);
-    ASSERT_TRUE(image) << image.error().message;
-    ASSERT_EQ(image->width, 2u);
-    ASSERT_EQ(image->height, 2u);
-    const std::vector<float> wanted{1, 0.5f, 0.25f, 0, 0, 0, 16, 16, 16, 2, 4, 6}; // mantissa x 2^(exponent - 136)
-    for (size_t i = 0; i < 4; ++i)
-    {
-        EXPECT_EQ(image->texels[i].x, wanted[3 * i]);
-        EXPECT_EQ(image->texels[i].y, wanted[3 * i + 1]);
-        EXPECT_EQ(image->texels[i].z, wanted[3 * i + 2]);
-    }
-}
-
-TEST(LoadEnvironment, ReadsSharedMaps)
-{
-    if (!fs::exists(shared("env")))
-        GTEST_SKIP() << "shared scenes not found";
-    for (const auto& entry : fs::directory_iterator(shared("env")))
-    {
-        const auto image = loadEnvironment(entry.path());
-        ASSERT_TRUE(image) << entry.path() << image.error().message;
-        EXPECT_EQ(image->width, 2 * image->height) << entry.path();
-        EXPECT_GT(luminance(averageRadiance(*image)), 0) << entry.path();
-    }
-}
-
-TEST(LoadEnvironment, NamesNanInSharedImage)
-{
-    if (!fs::exists(shared("exr")))
-        GTEST_SKIP() << "shared scenes not found";
-    const auto image = loadEnvironment(shared("exr/BrightRingsNanInf.exr"));
-    ASSERT_FALSE(image);
-    EXPECT_EQ(image.error().code, ExitCode::kInvalid);
-    EXPECT_TRUE(image.error().message.find("NaN") != std::string::npos ||
-                image.error().message.find("infinite") != std::string::npos)
-        << image.error().message;
-}
-
-TEST(LoadEnvironment, DamagedSharedImagesGiveAnErrorOrAnImage)
-{
-    if (!fs::exists(shared("negative/exr-damaged")))
-        GTEST_SKIP() << "shared scenes not found";
-    size_t errors = 0;
-    for (const auto& entry : fs::recursive_directory_iterator(shared("negative/exr-damaged")))
-    {
-        if (!entry.is_regular_file())
-            continue;
-        const fs::path link = fs::temp_directory_path() / ("lumicut-damaged-" + std::to_string(getpid()) + ".exr");
-        std::error_code ignored;
-        fs::remove(link, ignored);
-        fs::create_symlink(entry.path(), link); // the files have no suffix
-        const auto image = loadEnvironment(link);
-        fs::remove(link, ignored);
-        if (image)
-            continue;
-        ++errors;
-        EXPECT_GT(image.error().message.size(), 20u) << entry.path();
-        EXPECT_EQ(image.error().message.find('\n'), std::string::npos) << entry.path();
-    }
-    EXPECT_GT(errors, 0u);
 }

@@ -16,7 +16,7 @@ Result<ImportedScene> withExtensions(const std::vector<std::string>& used, const
 
 TEST(Extensions, AnUnknownRequiredOneIsUnsupportedAndNamed)
 {
-    for (const char* name : {"ACME_future", "KHR_texture_basisu", "EXT_meshopt_compression", "KHR_meshopt_compression"})
+    for (const char* name : {"ACME_future", "ACME_other"})
     {
         const auto imported = withExtensions({name}, {name});
         ASSERT_FALSE(imported) << name;
@@ -27,11 +27,11 @@ TEST(Extensions, AnUnknownRequiredOneIsUnsupportedAndNamed)
 
 TEST(Extensions, UnknownUsedOnesAreListedInOneWarning)
 {
-    const auto imported = withExtensions({"KHR_materials_sheen", "KHR_texture_transform", "ACME_future"}, {});
+    const auto imported = withExtensions({"ACME_other", "KHR_texture_transform", "ACME_future"}, {});
     ASSERT_TRUE(imported) << imported.error().message;
     ASSERT_EQ(imported->scene.warnings.size(), 1u);
-    const std::string& warning = imported->scene.warnings[0];
-    EXPECT_NE(warning.find("KHR_materials_sheen"), std::string::npos) << warning;
+    const std::string warning = sentence(imported->scene.warnings[0]);
+    EXPECT_NE(warning.find("ACME_other"), std::string::npos) << warning;
     EXPECT_NE(warning.find("ACME_future"), std::string::npos) << warning;
     EXPECT_EQ(warning.find("KHR_texture_transform"), std::string::npos) << warning;
 }

@@ -1,5 +1,7 @@
 #include "tests/compiler/gltf_builder.h"
 
+#include "compiler/gltf_material.h"
+
 #include "compiler/flatten.h"
 
 #define STB_IMAGE_WRITE_IMPLEMENTATION
@@ -167,15 +169,23 @@ Result<SceneData> GltfBuilder::scene() const
     Result<ImportedScene> imported = importScene(*file);
     if (!imported)
         return imported.error();
-    Result<std::vector<TextureImage>> images = decodeImages(*file, imported->images);
+    Result<std::vector<DecodedImage>> images = decodeImages(*file, imported->images);
     if (!images)
         return images.error();
+    takeImages(std::move(*images), imported->scene);
     Result<WorldMesh> mesh = flatten(*imported, imported->scene.counts, imported->scene.warnings);
     if (!mesh)
         return mesh.error();
-    imported->scene.images = std::move(*images);
     imported->scene.mesh = std::move(*mesh);
     return std::move(imported->scene);
+}
+
+ExitCode strictCode(const Result<ImportedScene>& imported)
+{
+    if (!imported)
+        return imported.error().code;
+    const Warnings damage = damageAmong(imported->scene.warnings);
+    return damage.empty() ? ExitCode::kOk : damage[0].code;
 }
 
 std::vector<unsigned char> encodePng(uint32_t width, uint32_t height, const std::vector<uint8_t>& rgba)

@@ -67,5 +67,8 @@ private:
     std::vector<unsigned char> buffer_;
 };
 
+/// The exit code of an import, or under --strict: that of its first damage.
+ExitCode strictCode(const Result<ImportedScene>& imported);
+
 std::vector<unsigned char> encodePng(uint32_t width, uint32_t height, const std::vector<uint8_t>& rgba);
 void writeBytes(const std::filesystem::path& path, const void* data, size_t bytes);

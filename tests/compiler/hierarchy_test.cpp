@@ -95,27 +95,81 @@ TEST(Hierarchy, HiddenNodesHideTheirChildren)
     expectNear(scene->mesh.positions[0], {0, 0, 0});
 }
 
-TEST(Hierarchy, RefusesCyclesSharedChildrenAndBadIndices)
+TEST(Hierarchy, ACycleLeavesNothingToDraw)
 {
-    const auto code = [](const char* key, const nlohmann::json& value)
+    for (const int child : {0, 1}) // its own child, its parent's parent
     {
         GltfBuilder builder;
         builder.triangle();
         builder.node({{"children", {0}}});
         builder.json["scenes"][0]["nodes"] = {1};
-        builder.json["nodes"][0][key] = value;
-        const auto imported = builder.import();
-        return imported ? ExitCode::kOk : imported.error().code;
+        builder.json["nodes"][0]["children"] = {child};
+        const Result<SceneData> scene = builder.scene();
+        ASSERT_FALSE(scene);
+        EXPECT_EQ(scene.error().code, ExitCode::kInvalid);
+    }
+}
+
+TEST(Hierarchy, MatricesMayBeAffineButForRoundingAndNotProjective)
+{
+    const auto place = [](const std::vector<double>& last_row) -> std::optional<gpu::vec3>
+    {
+        GltfBuilder builder;
+        builder.triangle();
+        std::vector<double> m{2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 2, 0, 4, 0, 0, 1};
+        for (size_t i = 0; i < 4; ++i)
+            m[4 * i + 3] = last_row[i];
+        builder.json["nodes"][0]["matrix"] = m;
+        const Result<SceneData> scene = builder.scene();
+        if (!scene)
+        {
+            EXPECT_EQ(scene.error().code, ExitCode::kInvalid);
+            return std::nullopt;
+        }
+        return scene->mesh.positions[1];
     };
-    EXPECT_EQ(code("name", "fine"), ExitCode::kOk);
-    EXPECT_EQ(code("children", {1}), ExitCode::kInvalid);
-    EXPECT_EQ(code("children", {0}), ExitCode::kInvalid);
-    EXPECT_EQ(code("children", {7}), ExitCode::kInvalid);
-    EXPECT_EQ(code("children", {-1}), ExitCode::kInvalid);
-    EXPECT_EQ(code("mesh", 5), ExitCode::kInvalid);
-    EXPECT_EQ(code("camera", 0), ExitCode::kInvalid);
-    EXPECT_EQ(code("translation", {1, 2}), ExitCode::kInvalid);
-    EXPECT_EQ(code("matrix", {1, 2, 3}), ExitCode::kInvalid);
+    for (const std::vector<double>& row :
+         {std::vector<double>{0, 0, 0, 1}, {1e-7, -2e-7, 0, 1}, {0, 0, 0, 0.9999999}, {3e-8, 0, 0, 1.0000002}})
+    {
+        const auto seen = place(row);
+        ASSERT_TRUE(seen) << row[0] << " " << row[3];
+        EXPECT_NEAR(seen->x, 6, 1e-5);
+    }
+    EXPECT_NEAR(place({0, 0, 0, 2}).value_or(gpu::vec3{}).x, 3, 1e-6); // a scale by one half
+    for (const std::vector<double>& row :
+         {std::vector<double>{0, 0, -1, 0}, {0.1, 0, 0, 1}, {0, 0, 0, 0}, {0, 0.01, 0, 1}})
+        EXPECT_FALSE(place(row)) << row[0] << " " << row[3];
+}
+
+TEST(Hierarchy, CamerasHaveTheFilesNearAndFarPlanes)
+{
+    const auto camera = [](const char* type, const nlohmann::json& lens) -> std::optional<CameraView>
+    {
+        GltfBuilder builder;
+        builder.triangle();
+        builder.json["cameras"] = {{{"type", type}, {type, lens}}};
+        builder.json["nodes"][0]["camera"] = 0;
+        const auto imported = builder.import();
+        return imported ? std::optional(imported->scene.cameras[0]) : std::nullopt;
+    };
+    const auto endless = camera("perspective", {{"yfov", 1}, {"znear", 0.5}});
+    ASSERT_TRUE(endless);
+    EXPECT_EQ(endless->near_plane, 0.5f);
+    EXPECT_EQ(endless->far_plane, 0);
+    const auto bounded = camera("perspective", {{"yfov", 1}, {"znear", 0.5}, {"zfar", 8}});
+    ASSERT_TRUE(bounded);
+    EXPECT_EQ(bounded->far_plane, 8);
+    const auto parallel = camera("orthographic", {{"xmag", 1}, {"ymag", 1}, {"znear", 0}, {"zfar", 3}});
+    ASSERT_TRUE(parallel);
+    EXPECT_EQ(parallel->near_plane, 0);
+    EXPECT_EQ(parallel->far_plane, 3);
+    const auto crossed = camera("perspective", {{"yfov", 1}, {"znear", 8}, {"zfar", 0.5}});
+    ASSERT_TRUE(crossed);
+    EXPECT_EQ(crossed->near_plane, 8);
+    EXPECT_EQ(crossed->far_plane, 0); // none
+    const auto behind = camera("orthographic", {{"xmag", 1}, {"ymag", 1}, {"znear", -1}, {"zfar", 3}});
+    ASSERT_TRUE(behind);
+    EXPECT_EQ(behind->near_plane, 0);
 }
 
 TEST(Hierarchy, SurvivesAChainOfAHundredThousandNodes)

@@ -167,19 +167,4 @@ TEST(Material, SpecularGlossinessBecomesADielectricWithTheSameF0)
     const float f0 = (m.ior - 1) / (m.ior + 1) * (m.ior - 1) / (m.ior + 1);
     EXPECT_NEAR(f0 * m.specular_color.x, 0.5, 1e-6);
 }
-
-TEST(Material, RefusesTexturesAndMaterialsThatDoNotExist)
-{
-    const auto code = [](const nlohmann::json& material, int index)
-    {
-        GltfBuilder builder;
-        builder.material(material);
-        builder.triangle({{"material", index}});
-        const auto imported = builder.import();
-        return imported ? ExitCode::kOk : imported.error().code;
-    };
-    EXPECT_EQ(code(nlohmann::json::object(), 0), ExitCode::kOk);
-    EXPECT_EQ(code(nlohmann::json::object(), 1), ExitCode::kInvalid);
-    EXPECT_EQ(code({{"normalTexture", {{"index", 4}}}}, 0), ExitCode::kInvalid);
-}
 } // namespace

@@ -86,7 +86,7 @@ TEST(Mesh, PointsAndLinesAreDroppedWithAWarning)
     ASSERT_TRUE(scene) << scene.error().message;
     EXPECT_EQ(scene->counts.dropped_primitives, 1u);
     ASSERT_EQ(scene->warnings.size(), 1u);
-    EXPECT_NE(scene->warnings[0].find("lines"), std::string::npos);
+    EXPECT_NE(scene->warnings[0].message.find("lines"), std::string::npos);
 }
 
 TEST(Mesh, DegenerateAndDuplicateTrianglesAreRemovedAndCounted)
@@ -163,17 +163,20 @@ TEST(Mesh, NormalsWithoutDirectionAreReplacedByTheTriangles)
     for (const gpu::VertexAttributes& v : scene->mesh.attributes)
         EXPECT_NEAR(decodeNormal(v.normal).z, 1, 1e-6);
     ASSERT_EQ(scene->warnings.size(), 1u);
-    EXPECT_NE(scene->warnings[0].find("2 vertex normals"), std::string::npos) << scene->warnings[0];
+    EXPECT_NE(scene->warnings[0].message.find("2 vertex normals"), std::string::npos) << scene->warnings[0].message;
 }
 
-TEST(Mesh, PositionsThatAreNotFiniteAreAnError)
+TEST(Mesh, TrianglesWithPositionsThatAreNotFiniteAreLeftOut)
 {
     GltfBuilder builder;
-    const int positions = builder.positions({0, 0, 0, INFINITY, 0, 0, 0, 1, 0});
-    builder.node({{"mesh", builder.mesh({{"attributes", {{"POSITION", positions}}}})}});
-    const auto imported = builder.import();
-    ASSERT_FALSE(imported);
-    EXPECT_EQ(imported.error().code, ExitCode::kInvalid);
+    const int positions = builder.positions({0, 0, 0, INFINITY, 0, 0, 0, 1, 0, 1, 1, 0});
+    const int indices = builder.accessor(std::vector<uint16_t>{0, 1, 2, 0, 3, 2}, "SCALAR", 5123, 6);
+    builder.node({{"mesh", builder.mesh({{"attributes", {{"POSITION", positions}}}, {"indices", indices}})}});
+    const Result<SceneData> scene = builder.scene();
+    ASSERT_TRUE(scene) << scene.error().message;
+    EXPECT_EQ(scene->mesh.triangles.size(), 1u);
+    ASSERT_EQ(scene->warnings.size(), 1u);
+    EXPECT_EQ(scene->warnings[0].message, "1 of 2 triangles have vertices that are not finite");
 }
 
 /// A quad in the xy plane with a normal map; u runs right or left, v runs down.

@@ -79,7 +79,7 @@ TEST(Pipeline, ASceneWithoutLightGetsAStatedSkyAndSunUnlessToldNotTo)
     for (const bool default_light : {true, false})
     {
         CompileOptions options{.input = folder / "dark.gltf", .output = folder / "dark.lumi"};
-        options.default_light = default_light;
+        options.default_light = default_light ? DefaultLight::kAuto : DefaultLight::kOff;
         const Result<CompileReport> report = compile(options);
         ASSERT_TRUE(report) << report.error().message;
         EXPECT_EQ(report->meta.environment != nullptr, default_light);
@@ -116,8 +116,13 @@ TEST(Pipeline, AFailureLeavesNoOutputBehind)
     GltfBuilder builder = richScene();
     builder.json["images"][0] = {{"uri", "gone.png"}};
     builder.writeGltf(folder / "scene.gltf");
-    const Result<CompileReport> report = compile({.input = folder / "scene.gltf", .output = folder / "scene.lumi"});
+    CompileOptions options{.input = folder / "scene.gltf", .output = folder / "scene.lumi"};
+    options.strict = true; // found late
+    const Result<CompileReport> report = compile(options);
     ASSERT_FALSE(report);
+    EXPECT_EQ(report.error().code, ExitCode::kInvalid);
+    ASSERT_EQ(report.error().details.size(), 1u);
+    EXPECT_NE(report.error().details[0].find("gone.png"), std::string::npos);
     EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1); // the scene alone
 }
 

@@ -52,7 +52,7 @@ gpu::vec3 facing(const WorldMesh& mesh, gpu::uvec3 t)
 std::vector<std::string> flips(const SceneData& scene)
 {
     std::vector<std::string> found;
-    for (const std::string& warning : scene.warnings)
+    for (const std::string& warning : sentences(scene.warnings))
         if (warning.find("against their winding") != std::string::npos)
             found.push_back(warning);
     return found;

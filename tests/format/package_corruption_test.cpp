@@ -11,6 +11,27 @@
 
 namespace
 {
+/// 2 layers of 4 x 4, 2 x 2 and 1 x 1 texels: a block each of 16 bytes take 96.
+void makeBlocks(SamplePackage& s, size_t bytes)
+{
+    s.meta.texture_pages[0]->encoding = lumicut::fb::TextureEncoding::Bc7Unorm;
+    s.texture_pages[0].resize(bytes);
+}
+
+/// A page of 32 x 16 texels with two tiles of 4 x 4: with borders and levels 12 x 8. @param x of the second
+void makeTiles(SamplePackage& s, uint32_t x)
+{
+    lumicut::fb::TexturePageT& page = *s.meta.texture_pages[0];
+    page.encoding = lumicut::fb::TextureEncoding::Bc4Unorm;
+    page.tiled = true;
+    page.width = 32, page.height = 16, page.layers = page.levels = 1;
+    s.texture_pages[0].resize(8 * 4 * 8);
+    s.texture_refs[0].sampling = gpu::kSampleTile;
+    s.texture_refs[1].sampling = gpu::kSampleTile | gpu::kSampleUv1;
+    s.texture_refs[1].layer = 0;
+    s.texture_refs[1].origin = x;
+}
+
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInf = std::numeric_limits<float>::infinity();
 
@@ -50,19 +71,30 @@ const ContentCase kContentCases[] = {
     {"TriangleClaimsLight", "chunk TRIS: triangle 0 claims light 1", [](auto& s) { s.triangles[0].light = 1; }},
     {"UvNan", "chunk VATT: vertex 7 has texture coordinates", [](auto& s) { s.vertex_attributes[7].uv1.y = kNan; }},
     {"ColourInfinite", "chunk VATT: vertex 8 has a colour", [](auto& s) { s.vertex_attributes[8].color.y = 0x7c000000; }},
-    {"BaseColour", "chunk MATL: material 0 has a base colour", [](auto& s) { s.materials[0].base_color.y = 1.5f; }},
-    {"Roughness", "chunk MATL: material 2 has metallic or roughness", [](auto& s) { s.materials[2].roughness = -0.1f; }},
-    {"Transmission", "chunk MATL: material 3 has transmission", [](auto& s) { s.materials[3].transmission = kNan; }},
+    {"BaseColour", "chunk MATL: material 0 has base_color outside 0 to 1", [](auto& s) { s.materials[0].base_color.y = 1.5f; }},
+    {"Roughness", "chunk MATL: material 2 has roughness outside 0 to 1", [](auto& s) { s.materials[2].roughness = -0.1f; }},
+    {"Transmission", "chunk MATL: material 3 has transmission outside 0 to 1", [](auto& s) { s.materials[3].transmission = kNan; }},
     {"Ior", "chunk MATL: material 3 has an index of refraction", [](auto& s) { s.materials[3].ior = 0.5f; }},
-    {"EmissionInfinite", "chunk MATL: material 1 has an emission", [](auto& s) { s.materials[1].emission.z = kInf; }},
-    {"AlphaCutoff", "chunk MATL: material 2 has an alpha cutoff", [](auto& s) { s.materials[2].alpha_cutoff = -1; }},
+    {"EmissionInfinite", "chunk MATL: material 1 has emission outside 0 to infinity", [](auto& s) { s.materials[1].emission.z = kInf; }},
+    {"AlphaCutoff", "chunk MATL: material 2 has alpha_cutoff outside 0 to infinity", [](auto& s) { s.materials[2].alpha_cutoff = -1; }},
+    {"Sheen", "chunk MATL: material 1 has sheen_color outside 0 to 1", [](auto& s) { s.materials[1].sheen_color.z = 2; }},
+    {"Film", "chunk MATL: material 1 has iridescence_ior outside 1 to infinity", [](auto& s) { s.materials[1].iridescence_ior = 0.5f; }},
     {"MaterialFlags", "chunk MATL: material 0 has unknown", [](auto& s) { s.materials[0].flags = 32; }},
     {"AlphaModes", "chunk MATL: material 2 has unknown or contradictory", [](auto& s) { s.materials[2].flags |= gpu::kMaterialAlphaBlend; }},
     {"MaterialTexture", "chunk MATL: material 0 refers to texture 2", [](auto& s) { s.materials[0].specular_color_texture = 2; }},
+    {"LastTexture", "as its diffuse_transmission_color_texture", [](auto& s) { s.materials[0].diffuse_transmission_color_texture = 2; }},
     {"TexturePage", "chunk TREF: texture 1 refers to page 1", [](auto& s) { s.texture_refs[1].page = 1; }},
     {"TextureLayer", "chunk TREF: texture 1 refers to layer 2", [](auto& s) { s.texture_refs[1].layer = 2; }},
     {"SamplingWrap", "chunk TREF: texture 0 has unknown sampling", [](auto& s) { s.texture_refs[0].sampling = 3; }},
-    {"SamplingBits", "chunk TREF: texture 0 has unknown sampling", [](auto& s) { s.texture_refs[0].sampling = 64; }},
+    {"SamplingBits", "chunk TREF: texture 0 has unknown sampling", [](auto& s) { s.texture_refs[0].sampling = 256; }},
+    {"TextureSize", "chunk TREF: texture 0 is not where page 0", [](auto& s) { s.texture_refs[0].size = 4 | 5 << 16; }},
+    {"TextureOrigin", "chunk TREF: texture 0 is not where page 0", [](auto& s) { s.texture_refs[0].origin = 4; }},
+    {"TileInPlainPage", "chunk TREF: texture 0 is not where page 0", [](auto& s) { s.texture_refs[0].sampling = gpu::kSampleTile; }},
+    {"PageOfBlocksTooLarge", "chunk TEXP 0: 168 bytes, but", [](auto& s) { s.meta.texture_pages[0]->encoding = lumicut::fb::TextureEncoding::Bc7Srgb; }},
+    {"PageOfBlocksTooSmall", "chunk TEXP 0: 95 bytes, but", [](auto& s) { makeBlocks(s, 95); }},
+    {"TiledPageWithLevels", "chunk META: texture page 0 is tiled and has 3", [](auto& s) { s.meta.texture_pages[0]->tiled = true; }},
+    {"TilePastItsPage", "chunk TREF: texture 1 is not where page 0", [](auto& s) { makeTiles(s, 24); }},
+    {"TileBetweenBlocks", "chunk TREF: texture 1 is not where page 0", [](auto& s) { makeTiles(s, 2); }},
     {"TextureTransform", "chunk TREF: texture 0 has a coordinate transform", [](auto& s) { s.texture_refs[0].v_row.z = kInf; }},
     {"PageTooSmall", "chunk TEXP 0: 167 bytes", [](auto& s) { s.texture_pages[0].pop_back(); }},
     {"PageMissing", "chunk TEXP 0: 0 bytes", [](auto& s) { s.texture_pages.clear(); }},
@@ -92,6 +124,8 @@ const ContentCase kContentCases[] = {
     {"EnvironmentNan", "chunk ENVR: texel 3", [](auto& s) { s.environment_map[3].y = kNan; }},
     {"EnvironmentNegative", "chunk ENVR: texel 7", [](auto& s) { s.environment_map[7].z = -1; }},
     {"EnvironmentUndescribed", "chunk ENVR or EIMP is there", [](auto& s) { s.meta.environment.reset(); s.lights[2].kind = gpu::kLightPoint; }},
+    {"EnvironmentRotation", "chunk META: the environment is turned by 3.2 radians", [](auto& s) { s.meta.environment->rotation = 3.2f; }},
+    {"EnvironmentRotationNan", "chunk META: the environment is turned by nan", [](auto& s) { s.meta.environment->rotation = kNan; }},
     {"EnvironmentAverage", "chunk META: the environment's average radiance", [](auto& s) { s.meta.environment->average_radiance.reset(); }},
     {"ImportanceSize", "chunk EIMP: 2 texels, META says 2 x 2", [](auto& s) { s.meta.environment->importance_height = 2; }},
     {"ImportanceAlias", "chunk EIMP: entry 1 has alias 2", [](auto& s) { s.environment_texels[1].alias = 2; }},
@@ -105,6 +139,10 @@ const ContentCase kContentCases[] = {
     {"CameraIncomplete", "chunk META: camera 0 lacks", [](auto& s) { s.meta.cameras[0]->up.reset(); }},
     {"CameraFov", "chunk META: camera 0 has a field of view of 3.2", [](auto& s) { s.meta.cameras[0]->vertical_fov = 3.2f; }},
     {"CameraBoth", "chunk META: camera 0 has a field of view", [](auto& s) { s.meta.cameras[0]->orthographic_height = 1; }},
+    {"CameraNear", "chunk META: camera 0 has its near plane at -1", [](auto& s) { s.meta.cameras[0]->near_plane = -1; }},
+    {"CameraNearNan", "chunk META: camera 0 has its near plane", [](auto& s) { s.meta.cameras[0]->near_plane = kNan; }},
+    {"CameraFar", "chunk META: camera 0 has its near plane", [](auto& s) { s.meta.cameras[0]->near_plane = 2, s.meta.cameras[0]->far_plane = 2; }},
+    {"CameraFarNan", "chunk META: camera 0 has its near plane", [](auto& s) { s.meta.cameras[0]->far_plane = kNan; }},
     {"BoundsMeta", "chunk META: the scene bounds", [](auto& s) { *s.meta.bounds_max = {-1, 1, 1}; }},
     {"OriginNan", "chunk META: the origin is not finite", [](auto& s) { s.meta.origin = std::make_unique<lumicut::fb::Vec3d>(0, kNan, 0); }},
     {"UnitZero", "chunk META: the unit of length is 0 m", [](auto& s) { s.meta.unit = 0; }},
@@ -178,7 +216,8 @@ package::ChunkEntry& envr(std::vector<package::ChunkEntry>& table)
 
 // clang-format off
 const ShellCase kShellCases[] = {
-    {"NewerVersion", ExitCode::kUnsupported, "version 2.0", [](auto& h, auto&) { h.version_major = 2; }},
+    {"NewerVersion", ExitCode::kUnsupported, "version 3.0", [](auto& h, auto&) { h.version_major = 3; }},
+    {"OlderVersion", ExitCode::kUnsupported, "compile it again", [](auto& h, auto&) { h.version_major = 1; }},
     {"HeaderReserved", ExitCode::kInvalid, "header's reserved", [](auto& h, auto&) { h.reserved = 1; }},
     {"NoChunks", ExitCode::kInvalid, "counts 0 chunks", [](auto& h, auto&) { h.chunk_count = 0; }},
     {"ManyChunks", ExitCode::kInvalid, "counts 65 chunks", [](auto& h, auto&) { h.chunk_count = 65; }},

@@ -1,9 +1,14 @@
 // Paths that are no packages, and writing that fails.
+#include "format/temporary_file.h"
 #include "tests/format/sample_package.h"
 
 #include <gtest/gtest.h>
 
 #include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
 
 #include <fstream>
 
@@ -96,4 +101,25 @@ TEST_F(PackageFile, WritingOverAFolderLeavesNothingBehind)
     ASSERT_FALSE(written);
     EXPECT_EQ(written.error().code, ExitCode::kIo);
     EXPECT_EQ(fileCount(), 1u);
+}
+
+TEST_F(PackageFile, AnInterruptedProgramLeavesNoTemporaryBehind)
+{
+    for (const int signal : {SIGINT, SIGTERM})
+    {
+        const pid_t child = fork();
+        if (child == 0)
+        {
+            removeTemporaryFilesOnSignals();
+            const TemporaryFile done_before(folder.path() / "before");
+            TemporaryFile a(folder.path() / "a"), b(folder.path() / "b");
+            a.append(std::as_bytes(std::span("half", 4)));
+            raise(signal);
+            _exit(0);
+        }
+        int status = 0;
+        waitpid(child, &status, 0);
+        EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == signal) << status;
+        EXPECT_EQ(fileCount(), 0u);
+    }
 }

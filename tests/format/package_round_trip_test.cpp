@@ -77,6 +77,7 @@ TEST(PackageRoundTrip, CompressedChunksComeBackAsWritten)
     page.layers = 1;
     page.levels = 1;
     sample.texture_refs[1].layer = 0;
+    sample.texture_refs[0].size = sample.texture_refs[1].size = 256 | 256 << 16;
     const std::vector<std::byte> plain = sample.bytes();
     const std::vector<std::byte> packed = sample.bytes({.zstd_level = 5});
     EXPECT_LT(packed.size(), plain.size() / 4);

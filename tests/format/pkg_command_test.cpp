@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <cstring>
 #include <fstream>
 #include <set>
 
@@ -130,4 +131,63 @@ TEST_F(PkgCommand, BundleRefusesWhatCannotWorkAndLeavesNothing)
     EXPECT_EQ(run("bundle good.lumi -o none/demo.tar.zst --player '" LUMICUT_PKG "'"), 2);
     for (const auto& entry : std::filesystem::directory_iterator(folder.path()))
         EXPECT_EQ(entry.path().filename().string().find("demo"), std::string::npos) << entry.path();
+}
+
+TEST_F(PkgCommand, DiffIsSilentWhereNothingDiffersAndNamesWhatDoes)
+{
+    EXPECT_EQ(run("diff good.lumi good.lumi"), 0);
+    EXPECT_EQ(out + err, "");
+    SamplePackage sample;
+    sample.meta.provenance->options.push_back("--sun 1");
+    sample.vertex_attributes[0].uv0.x += 0.25f;
+    ASSERT_TRUE(sample.write(folder.path() / "other.lumi"));
+    EXPECT_EQ(run("diff good.lumi other.lumi"), 1);
+    EXPECT_NE(out.find("+option --sun 1\n"), std::string::npos) << out;
+    EXPECT_NE(out.find("chunk VATT 0"), std::string::npos) << out;
+    EXPECT_EQ(out.find("chunk NODE 0"), std::string::npos) << out;
+    ASSERT_EQ(run("diff good.lumi other.lumi --format json"), 1);
+    const nlohmann::json json = nlohmann::json::parse(out);
+    std::set<std::string> differing;
+    for (const auto& chunk : json["chunks"])
+        if (!chunk["same"].get<bool>())
+            differing.insert(chunk["id"]);
+    EXPECT_EQ(differing, (std::set<std::string>{"META", "VATT"}));
+    for (const char* trouble : {"diff good.lumi bad.lumi", "diff good.lumi none.lumi", "diff good.lumi", "diff"})
+        EXPECT_EQ(run(trouble), 2) << trouble;
+}
+
+TEST_F(PkgCommand, ExtractWritesThingsAsOtherProgramsReadThem)
+{
+    const auto package = package::Package::open(folder.path() / "good.lumi");
+    ASSERT_TRUE(package);
+    ASSERT_EQ(run("extract good.lumi geometry -o g.glb"), 0) << err;
+    const std::string glb = readText(folder.path() / "g.glb");
+    ASSERT_EQ(glb.substr(0, 4), "glTF");
+    uint32_t json_bytes = 0;
+    std::memcpy(&json_bytes, glb.data() + 12, 4);
+    const nlohmann::json json = nlohmann::json::parse(glb.substr(20, json_bytes));
+    size_t corners = 0;
+    for (const auto& primitive : json["meshes"][0]["primitives"])
+        corners += json["accessors"][size_t(primitive["indices"])]["count"].get<size_t>();
+    EXPECT_EQ(corners, 3 * package->triangles().size());
+    EXPECT_EQ(json["accessors"][0]["count"], package->vertexAttributes().size());
+    EXPECT_EQ(json["materials"].size(), package->materials().size());
+
+    ASSERT_EQ(run("extract good.lumi VATT -o v.bin"), 0) << err;
+    EXPECT_EQ(std::filesystem::file_size(folder.path() / "v.bin"), package->vertexAttributes().size_bytes());
+    ASSERT_EQ(run("extract good.lumi texture/0/0 -o t.png"), 0) << err;
+    EXPECT_EQ(readText(folder.path() / "t.png").substr(1, 3), "PNG");
+    ASSERT_EQ(run("extract good.lumi environment -o e.exr"), 0) << err;
+    EXPECT_EQ(readText(folder.path() / "e.exr").substr(0, 4), "\x76\x2f\x31\x01");
+}
+
+TEST_F(PkgCommand, ExtractRefusesWhatIsNotThereAndLeavesNothing)
+{
+    for (const char* wrong : {"geometry -o x.obj", "texture/99/0 -o x.png", "texture/0 -o x.png", "NONE -o x.bin",
+                              "VATT/1 -o x.bin", "TEXP/a -o x.bin", "TEXP/0/0/0 -o x.bin"})
+        EXPECT_EQ(run(std::string("extract good.lumi ") + wrong), 1) << wrong;
+    EXPECT_EQ(run("extract bad.lumi geometry -o x.glb"), 3);
+    EXPECT_EQ(run("extract good.lumi geometry -o none/x.glb"), 2);
+    for (const auto& entry : std::filesystem::directory_iterator(folder.path()))
+        EXPECT_FALSE(entry.path().filename().string().starts_with("x")) << entry.path();
 }

@@ -1,6 +1,7 @@
 #include "tests/format/sample_package.h"
 
 #include "format/check.h"
+#include "format/material.h"
 
 #include <unistd.h>
 
@@ -10,6 +11,7 @@
 
 namespace
 {
+constexpr uint32_t kFourByFour = 4 | 4 << 16; // texels
 constexpr float kEmptyLow = std::numeric_limits<float>::max();
 constexpr float kEmptyHigh = std::numeric_limits<float>::lowest();
 
@@ -30,26 +32,11 @@ gpu::BvhNode node(gpu::uvec4 child)
 
 gpu::Material material(uint32_t flags)
 {
-    return {.base_color = {0.5f, 0.5f, 0.5f},
-            .alpha = 1,
-            .emission = {},
-            .alpha_cutoff = 0.5f,
-            .metallic = 0,
-            .roughness = 1,
-            .normal_scale = 1,
-            .transmission = 0,
-            .ior = 1.5f,
-            .specular = 1,
-            .specular_color = {1, 1, 1},
-            .absorption = {},
-            .flags = flags,
-            .base_color_texture = gpu::kNone,
-            .metallic_roughness_texture = gpu::kNone,
-            .normal_texture = gpu::kNone,
-            .emissive_texture = gpu::kNone,
-            .transmission_texture = gpu::kNone,
-            .specular_texture = gpu::kNone,
-            .specular_color_texture = gpu::kNone};
+    gpu::Material m = package::defaultMaterial();
+    m.base_color = {0.5f, 0.5f, 0.5f};
+    m.metallic = 0;
+    m.flags = flags;
+    return m;
 }
 
 gpu::Light light(uint32_t kind, float pmf)
@@ -116,7 +103,7 @@ SamplePackage::SamplePackage()
         triangles.push_back({{3 * i, 3 * i + 1, 3 * i + 2}, i == 1 ? 1 : gpu::kNone});
         vertex_attributes.insert(vertex_attributes.end(), 3, {1, 2, {0, 0}, {1, 1}, {0x3c003c00, 0x3c003c00}});
     }
-    texture_refs = {{0, 0, 0, {1, 0, 0}, {0, 1, 0}}, {0, 1, gpu::kSampleUv1, {1, 0, 0}, {0, 1, 0}}};
+    texture_refs = {{0, 0, 0, 0, kFourByFour, {1, 0, 0}, {0, 1, 0}}, {0, 1, gpu::kSampleUv1, 0, kFourByFour, {1, 0, 0}, {0, 1, 0}}};
     texture_pages = {std::vector<std::byte>((16 + 4 + 1) * 2 * 4, std::byte{0x55})};
     lights = {light(gpu::kLightPoint, 0.25f), light(gpu::kLightTriangle, 0.25f), light(gpu::kLightEnvironment, 0.5f)};
     lights[1].triangle = 1;

@@ -1,6 +1,8 @@
 #include "tests/format/walk_package.h"
 
 #include "format/check.h"
+#include "format/material.h"
+#include "format/texture_encoding.h"
 
 #include <algorithm>
 #include <array>
@@ -24,7 +26,8 @@ double texel(const package::Package& package, uint32_t texture)
     uint64_t offset = 0;
     for (uint32_t level = 0; level < page.levels(); ++level)
     {
-        const uint64_t layer_bytes = 4ull * std::max(1u, page.width() >> level) * std::max(1u, page.height() >> level);
+        const uint64_t layer_bytes = package::levelBytes(page.encoding(), std::max(1u, page.width() >> level),
+                                                         std::max(1u, page.height() >> level));
         const uint64_t last = offset + layer_bytes * (ref.layer + 1) - 1; // its layer's last byte of this level
         check(last < package.texturePage(ref.page).size(), "byte {}", last);
         sum += double(package.texturePage(ref.page)[last]);
@@ -53,10 +56,8 @@ double hit(const package::Package& package, uint32_t bvh_triangle)
     double sum = t.v0.x + t.v1.y + t.v2.z;
     for (const uint32_t v : {surface.vertices.x, surface.vertices.y, surface.vertices.z})
         sum += at(package.vertexAttributes(), v).uv0.x;
-    for (const uint32_t texture :
-         {m.base_color_texture, m.metallic_roughness_texture, m.normal_texture, m.emissive_texture,
-          m.transmission_texture, m.specular_texture, m.specular_color_texture})
-        sum += texel(package, texture);
+    for (const package::MaterialTexture& texture : package::kMaterialTextures)
+        sum += texel(package, m.*texture.index);
     if (surface.light != gpu::kNone)
         sum += at(package.lights(), surface.light).pmf;
     return sum;

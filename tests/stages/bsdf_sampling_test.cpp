@@ -1,4 +1,5 @@
 // Directions that the BSDF chooses on the device, against densities integrated in double precision on the CPU.
+#include "shaders/legs/legs.h"
 #include "tests/stages/sampling_test.h"
 
 namespace
@@ -93,12 +94,12 @@ gpu::vec3 single(Double3 v)
 class BsdfSampling : public Sampling
 {
 protected:
-    std::vector<gpu::DirectionDraw> drawn(const Lobes& m, gpu::vec3 wo, bool visible_normals)
+    std::vector<gpu::BsdfDraw> drawn(const Lobes& m, gpu::vec3 wo, bool visible_normals)
     {
-        return draw<gpu::DirectionDraw>(testKernel("draw/bsdf"), anyScene(),
-                                        gpu::BsdfDrawParams{.count = kDraws,
+        return draw<gpu::BsdfDraw>(testKernel("draw/bsdf"), anyScene(),
+                                   gpu::BsdfDrawParams{.count = kDraws,
                                                             .seed = ++seed_,
-                                                            .visible_normals = visible_normals ? 1u : 0u,
+                                                            .what = visible_normals ? gpu::kDrawVisibleNormals : gpu::kDrawDirections,
                                                             .front = m.front ? 1u : 0u,
                                                             .flags = m.thin ? gpu::kMaterialThin : 0u,
                                                             .base_color = 1,
@@ -145,7 +146,7 @@ protected:
         tests.add(what, against(
                             draws, [&](Double3 wi) { return density(m, wo, wi); }, gridFor(m, degrees)));
         double worst = 0; // part of what rounding may do
-        for (const gpu::DirectionDraw& d : std::span(draws).first(kDraws / 20))
+        for (const gpu::BsdfDraw& d : std::span(draws).first(kDraws / 20))
             if (d.pdf > 0)
             {
                 const Double3 wi = normalized(d.direction);
@@ -154,11 +155,11 @@ protected:
         EXPECT_LE(worst, 1) << what;
     }
 
-    static ChiSquared against(const std::vector<gpu::DirectionDraw>& draws,
+    static ChiSquared against(const std::vector<gpu::BsdfDraw>& draws,
                               const std::function<double(Double3)>& density, const Grid& grid)
     {
         std::vector<double> counts(grid.absorbedCell() + 1);
-        for (const gpu::DirectionDraw& d : draws)
+        for (const gpu::BsdfDraw& d : draws)
             ++counts[d.pdf > 0 ? grid.cellOf(d.direction) : grid.absorbedCell()];
         return chiSquared(counts, times(kDraws, grid.integrate(density)));
     }
@@ -302,5 +303,47 @@ TEST_F(Sampling, GatheringRaysAreCosineDistributedAboutAnyNormal)
                   chiSquared(counts, times(kDraws, grid.integrate(cosine))));
     }
     tests.expectAll();
+}
+
+/// Half of the pairs stay even, half go to cells as these count; of the density's two parts each draw's weight is the inverse.
+TEST_F(Sampling, AimedGatheringRaysGoWhereLegsSay)
+{
+    std::vector<uint32_t> cells(gpu::kAimCells); // a streak over some cells, one bright cell, all others empty
+    for (uint32_t c = 40; c < 56; ++c)
+        cells[c] = gpu::kAimWhole / 32;
+    cells[gpu::kAimCells - 1] = gpu::kAimWhole / 2;
+    const Buffer counts = device().upload<uint32_t>("test.counts", cells);
+    const Buffer draws = device().array<gpu::PairDraw>("test.draws", kDraws);
+    Recorder rec(device());
+    rec.begin(anyScene().descriptorSet());
+    rec.run(testKernel("draw/aim"), kDraws, gpu::DrawParams{.count = kDraws, .seed = 1, .aim = 0, .point = {}},
+            {{"Counts", counts}, {"Draws", draws}});
+    rec.submitAndWait();
+    constexpr size_t kParts = 4; // of a cell, each way
+    std::vector<double> density(gpu::kAimCells), found(gpu::kAimCells), within(kParts * kParts), expected;
+    for (size_t c = 0; c < density.size(); ++c)
+    {
+        density[c] = 1 - gpu::kAimMost + gpu::kAimMost * cells[c] * double(gpu::kAimCells) / gpu::kAimWhole;
+        expected.push_back(density[c] * kDraws / gpu::kAimCells);
+    }
+    double weights = 0;
+    for (const gpu::PairDraw& d : device().download<gpu::PairDraw>(draws, kDraws))
+    {
+        ASSERT_TRUE(d.pair.x >= 0 && d.pair.x < 1 && d.pair.y >= 0 && d.pair.y < 1);
+        const double x = d.pair.x * gpu::kAimRows, y = d.pair.y * gpu::kAimColumns;
+        const size_t cell = size_t(y) * gpu::kAimRows + size_t(x);
+        const double to_rim = std::min(std::abs(x - std::round(x)), std::abs(y - std::round(y)));
+        ASSERT_TRUE(d.cell == cell || to_rim < 1e-3) << d.cell << " " << cell; // the direction's cell but for rounding
+        ASSERT_NEAR(d.weight * density[cell], 1, 1e-4);
+        ++found[cell];
+        ++within[size_t((y - std::floor(y)) * kParts) * kParts + size_t((x - std::floor(x)) * kParts)];
+        weights += d.weight;
+    }
+    ChiSquaredTests tests;
+    tests.add("cells", chiSquared(found, expected));
+    tests.add("places within", chiSquared(within, std::vector<double>(within.size(), double(kDraws) / double(within.size()))));
+    tests.expectAll();
+    // The weights' mean is 1; none is above 1 / (1 - kAimMost), and so is no deviation of one.
+    EXPECT_NEAR(weights / kDraws, 1, 4 / (1 - gpu::kAimMost) / std::sqrt(double(kDraws)));
 }
 } // namespace

@@ -107,6 +107,30 @@ TEST_F(ClosedForm, PatternedEnvironmentLightsEverySideByItsIntegral)
     }
 }
 
+/// Turns by a rotation about +Y, right-handed: from +Z to +X by a quarter turn.
+gpu::vec3 turned(gpu::vec3 d, float angle)
+{
+    const float c = std::cos(angle), s = std::sin(angle);
+    return {c * d.x + s * d.z, d.y, -s * d.x + c * d.z};
+}
+
+TEST_F(ClosedForm, ATurnedEnvironmentIsSeenAndLightsAsItsMapTurned)
+{
+    constexpr float kAngle = -2.5f;
+    SceneBuilder builder;
+    builder.box({-0.5f, -0.5f, -0.5f}, {0.5f, 0.5f, 0.5f}, builder.material(lambert(kAlbedo)));
+    const ImageF map = patternedMap();
+    builder.environment(map, kAngle);
+    const auto scene = load(builder.compile());
+    const float* const rgb = &map.rgb[3 * (2 * map.width + 5)]; // of the bright texel
+    const gpu::vec3 bright = turned(directionAt(5.5 / map.width, 2.5 / map.height), kAngle);
+    expectBoth("bright texel", *scene, viewOf(3.0f * bright, -1.0f * bright), {rgb[0], rgb[1], rgb[2]}, {});
+    Rgb want = irradiance(map, turned({1, 0, 0}, -kAngle));
+    for (double& channel : want)
+        channel *= kAlbedo / kPi;
+    expectBoth("lit side", *scene, viewOf({0.5f, 0, 0}, {1, 0, 0}), want, {.side = 32, .sample_count = 128, .depth = 3});
+}
+
 /// The directions at a bright texel's rim must have the density with which they are chosen: where map and direction
 /// disagree by a rounding error, a neighbour's density, a million times smaller, would be taken for it.
 TEST_F(ClosedForm, ASunOfOneTexelGivesAllItsLight)

@@ -80,7 +80,8 @@ protected:
     std::vector<gpu::Sample> gathered(const SceneGpu& scene, const std::vector<gpu::Sample>& samples,
                                       const std::vector<gpu::CutNode>& nodes, CutMode mode = CutMode::kRefined,
                                       uint32_t seed = 1, const std::vector<gpu::Photon>& photons = {},
-                                      const std::function<Double3(const gpu::CutNode&)>& direction = {})
+                                      const std::function<Double3(const gpu::CutNode&)>& direction = {},
+                                      const LegsStage* legs = nullptr)
     {
         const uint32_t count = uint32_t(samples.size());
         const auto cut = cutOf(scene, nodes, direction);
@@ -96,7 +97,8 @@ protected:
                                  .specular_depth = 8,
                                  .photon_count = 50,
                                  .radius = 5,
-                                 .seed = seed});
+                                 .seed = seed,
+                                 .legs = legs});
                });
         return contents<gpu::Sample>(on_gpu.samples, count);
     }
@@ -148,6 +150,55 @@ TEST_F(Gather, SeesALitCeilingUnderItsFormFactor)
     fmt::print("  mean difference {:+.5f}, standard deviation of independent rays {:.5f}\n", difference / 64,
                std::sqrt(variance) / 64);
     EXPECT_LE(std::abs(difference), 4 * std::sqrt(variance));
+}
+
+/// Legs from a strip of the ceiling to the floor aim rays there. What they bring is the ceiling's light, and its distance, as
+/// without them; of a ceiling that is lit in that strip alone it is so with less noise.
+TEST_F(Gather, ByAimedRaysGivesTheSameWithLessNoise)
+{
+    constexpr float kStrip = 0.1f; // metres
+    SceneBuilder builder;
+    builder.quad({kLow.x, kHigh.y, kLow.z}, {2, 0, 0}, {0, 0, kStrip}, builder.material(with(lambert(kAlbedo), {{"doubleSided", true}})));
+    builder.quad({kLow.x, 0, kHigh.z}, {2, 0, 0}, {0, 0, -3}, builder.material(lambert(kAlbedo)));
+    const auto scene = load(builder.compile());
+    Random random(3);
+    std::vector<gpu::Photon> photons;
+    for (uint32_t i = 0; i < 4 * gpu::kLegCount; ++i)
+    {
+        const gpu::vec3 from{random.between(kLow.x, kHigh.x), kHigh.y, random.between(kLow.z, kLow.z + kStrip)};
+        const gpu::vec3 to{random.between(kLow.x, kHigh.x), 0, random.between(kLow.z, kHigh.z)};
+        photons.push_back({.position = from, .direction = packedNormal({0, 1, 0}), .power = {1, 1, 1}, .normal = packedNormal({0, -1, 0})});
+        photons.push_back({.position = to,
+                           .direction = packedNormal(normalized(Double3(to) - Double3(from))),
+                           .power = {1, 1, 1},
+                           .normal = packedNormal({0, 1, 0})});
+    }
+    const Paths paths = pathsOf(photons, 2);
+    const LegsStage legs(device());
+    submit(*scene, [&](Recorder& rec) { legs.record(rec, paths.output(), 1); });
+    const auto samples = floorSamples(200);
+    const auto nodes = wallNodes([](Double3 normal) { return normal.y < 0 ? gpu::vec3{1, 1, 1} : gpu::vec3{}; });
+    const auto errorsOf = [&](const LegsStage* aimed, double& mean, double& squares)
+    {
+        mean = squares = 0;
+        for (const gpu::Sample& sample : gathered(*scene, samples, nodes, CutMode::kRefined, 1, {}, {}, aimed))
+        {
+            double factor = 0;
+            for (const double x : {double(sample.position.x - kLow.x), double(kHigh.x - sample.position.x)})
+                factor += cornerFormFactor(x, sample.position.z - kLow.z, kHigh.y) -
+                          std::copysign(cornerFormFactor(x, std::abs(sample.position.z - kLow.z - kStrip), kHigh.y),
+                                        sample.position.z - kLow.z - kStrip);
+            const double error = sample.irradiance.x - kAlbedo * factor;
+            mean += error / 200;
+            squares += error * error / 200;
+        }
+    };
+    double mean, squares, aimed_mean, aimed_squares;
+    errorsOf(nullptr, mean, squares);
+    errorsOf(&legs, aimed_mean, aimed_squares);
+    fmt::print("  mean error {:+.5f}, aimed {:+.5f}; mean square {:.3g}, aimed {:.3g}\n", mean, aimed_mean, squares, aimed_squares);
+    EXPECT_LE(std::abs(aimed_mean), 4 * std::sqrt(aimed_squares / 200));
+    EXPECT_LT(aimed_squares, 0.5 * squares);
 }
 
 /// What pixels gather for themselves does not depend on how many there is room for at once; in even light it is radiosity.

@@ -109,6 +109,23 @@ std::unique_ptr<PhotonMap> GiTest::mapOf(const SceneGpu& scene, const std::vecto
     return map;
 }
 
+Paths GiTest::pathsOf(const std::vector<gpu::Photon>& photons, uint32_t length)
+{
+    const uint32_t count = uint32_t(photons.size()), path_count = count / length;
+    std::vector<uint32_t> slots(count), offsets(path_count);
+    for (uint32_t i = 0; i < count; ++i)
+        slots[i] = i;
+    for (uint32_t i = 0; i < path_count; ++i)
+        offsets[i] = i * length;
+    return {.photons = upload("test.photons", photons),
+            .slots = upload("test.slots", slots),
+            .size = sizeBuffer(count),
+            .offsets = upload("test.offsets", offsets),
+            .counts = upload("test.counts", std::vector<uint32_t>(path_count, length)),
+            .store = upload("test.store", std::vector{gpu::PhotonStore{.path_count = path_count, .photon_count = count}}),
+            .path_count = path_count};
+}
+
 std::unique_ptr<Cut> GiTest::cutOf(const SceneGpu& scene, const std::vector<gpu::CutNode>& nodes,
                                    const std::function<Double3(const gpu::CutNode&)>& direction)
 {

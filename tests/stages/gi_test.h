@@ -40,6 +40,18 @@ struct PhotonMap
     TreeData tree;
 };
 
+/// Stored photons made by hand: paths of equal length, one after another.
+struct Paths
+{
+    Buffer photons, slots, size, offsets, counts, store;
+    uint32_t path_count;
+    StoredPhotons output() const
+    {
+        return {.photons = photons, .slots = slots, .size = size, .offsets = offsets, .counts = counts, .store = store,
+                .path_count = path_count, .capacity = path_count};
+    }
+};
+
 /// A cut made by hand.
 struct Cut
 {
@@ -83,6 +95,8 @@ protected:
 
     /// The map of exactly these photons.
     static std::unique_ptr<PhotonMap> mapOf(const SceneGpu& scene, const std::vector<gpu::Photon>& photons);
+    /// These photons, of which every `length` are a path.
+    static Paths pathsOf(const std::vector<gpu::Photon>& photons, uint32_t length);
     /// The cut of exactly these nodes.
     /// @param direction in which light arrives at a node; without it, straight down on its surface
     static std::unique_ptr<Cut> cutOf(const SceneGpu& scene, const std::vector<gpu::CutNode>& nodes,

@@ -1,6 +1,6 @@
 // lumicut-play as its user meets it: what it says of bad input, what it leaves behind, what it renders.
 #include "tests/tools/run_program.h"
-#include "tools/image/read_exr.h"
+#include "image/read_exr.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -292,14 +292,14 @@ TEST_F(Player, ReplacesAnOlderPictureOnlyWhenTheNewOneIsWhole)
 TEST_F(Player, FailedCompilationsLeaveNothingBehind)
 {
     std::filesystem::remove(folder_ / "scene.lumi");
-    std::filesystem::create_directory(folder_ / "folder.lumi");
+    std::filesystem::create_directories(folder_ / "folder/scene.lumi"); // in the package's place
     const auto refused = [&](const std::string& arguments, int code, const std::string& words)
     {
         SCOPED_TRACE(arguments);
         const std::set<std::string> before = files();
         expectRefusal(compile("-q " + arguments), before, code, words);
     };
-    refused(path("scene.gltf") + " -o " + path("folder.lumi"), 2, "folder");
+    refused(path("scene.gltf") + " -o " + path("folder"), 2, "folder");
     refused(path("scene.gltf") + " -o /proc/out.lumi", 2, "cannot create");
     refused("--nonsense", 1, "lumicut-compile: error: ");
     std::filesystem::resize_file(folder_ / "square.bin", 40);

@@ -92,6 +92,36 @@ Camera cameraAt(gpu::vec3 position, gpu::vec3 forward, float vertical_fov, float
             .orthographic_height = orthographic_height};
 }
 
+TEST_F(CameraRays, StartInTheNearPlaneAndEndInTheFarOne)
+{
+    constexpr float kNear = 3, kFar = 12;
+    for (const bool orthographic : {false, true})
+    {
+        Camera camera = cameraAt({1, 2, 3}, {0.3f, -0.5f, -1}, orthographic ? 0 : 1.2f, orthographic ? 4.0f : 0);
+        camera.near_plane = kNear;
+        camera.far_plane = kFar;
+        gpu::CameraParams params = cameraParams(camera, 32, 16);
+        params.sample_count = 2;
+        const std::vector<gpu::Ray> rays = generate(params);
+        camera.near_plane = camera.far_plane = 0;
+        gpu::CameraParams whole_params = cameraParams(camera, 32, 16);
+        whole_params.sample_count = 2;
+        const std::vector<gpu::Ray> whole = generate(whole_params);
+        const auto depth = [&](gpu::vec3 p) { return dot(p + -1.0f * camera.position, camera.forward); };
+        constexpr float kTolerance = 1e-5f; // some roundings of numbers up to 24
+        for (size_t i = 0; i < rays.size(); ++i)
+        {
+            ASSERT_NEAR(depth(rays[i].origin), kNear, kTolerance) << orthographic << " " << i;
+            ASSERT_NEAR(depth(rays[i].origin + rays[i].t_max * rays[i].direction), kFar, kTolerance) << i;
+            // Another piece of the same line.
+            const gpu::vec3 way = rays[i].origin + -1.0f * whole[i].origin;
+            ASSERT_NEAR(length(cross(way, whole[i].direction)), 0, kTolerance) << i;
+            ASSERT_NEAR(length(cross(rays[i].direction, whole[i].direction)), 0, kTolerance) << i;
+            ASSERT_GE(whole[i].t_max, 1e30f);
+        }
+    }
+}
+
 class Views : public CameraRays, public testing::WithParamInterface<View>
 {
 };

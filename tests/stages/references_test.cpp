@@ -9,7 +9,7 @@
 #include "tests/stages/same_picture.h"
 #include "tests/tools/temporary_folder.h"
 #include "tools/compare/metrics.h"
-#include "tools/image/read_exr.h"
+#include "image/read_exr.h"
 
 #include <nlohmann/json.hpp>
 
@@ -68,7 +68,7 @@ package::Package compiledScene(const Comparison& c)
         std::ofstream(folder / "lambert.glb", std::ios::binary) << withoutSpecular(fileBytes(input));
         input = folder / "lambert.glb";
     }
-    const auto report = compile({.input = input, .output = folder / "scene.lumi"});
+    const auto report = compile({.input = input, .output = folder / "scene.lumi", .textures = TextureCompression::kRaw});
     check(report, "{}: {}", c.scene, report.error().message);
     auto package = package::Package::open(folder / "scene.lumi");
     check(package, "{}", package.error().message);

@@ -3,7 +3,7 @@
 #include "compiler/compile.h"
 #include "format/check.h"
 #include "tests/compiler/gltf_builder.h"
-#include "tools/image/write_image.h"
+#include "image/write_image.h"
 
 #include <algorithm>
 #include <array>
@@ -17,6 +17,7 @@ struct SceneBuilder::State
     GltfBuilder gltf;
     std::set<std::string> extensions;
     bool has_environment = false;
+    float environment_rotation = 0;
 };
 
 SceneBuilder::SceneBuilder() : state_(std::make_unique<State>())
@@ -141,11 +142,12 @@ void SceneBuilder::light(const nlohmann::json& light, const nlohmann::json& node
     addRoot(gltf.json, gltf.node(above));
 }
 
-void SceneBuilder::environment(const ImageF& map)
+void SceneBuilder::environment(const ImageF& map, float rotation)
 {
     const Status status = writeExr(state_->folder / "environment.exr", map);
     check(bool(status), "{}", status ? "" : status.error().message);
     state_->has_environment = true;
+    state_->environment_rotation = rotation;
 }
 
 std::filesystem::path SceneBuilder::compile()
@@ -154,9 +156,10 @@ std::filesystem::path SceneBuilder::compile()
         state_->gltf.json["extensionsUsed"] = state_->extensions;
     state_->gltf.writeGltf(state_->folder / "scene.gltf");
     CompileOptions options{.input = state_->folder / "scene.gltf", .output = state_->folder / "scene.lumi"};
-    options.default_light = false;
+    options.default_light = DefaultLight::kOff;
     if (state_->has_environment)
         options.environment = state_->folder / "environment.exr";
+    options.environment_rotation = state_->environment_rotation;
     const auto report = ::compile(options);
     check(bool(report), "{}", report ? "" : report.error().message);
     return options.output;

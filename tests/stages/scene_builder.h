@@ -1,7 +1,7 @@
 // Tiny scenes whose light is known in closed form, as glTF and compiled to a package by the compiler itself.
 #pragma once
 #include "format/gpu_types.h"
-#include "tools/image/image.h"
+#include "image/image.h"
 
 #include <nlohmann/json.hpp>
 
@@ -38,8 +38,8 @@ public:
     /// A light of KHR_lights_punctual on a node with these properties, below a node with those of `parent`.
     void light(const nlohmann::json& light, const nlohmann::json& node,
                const nlohmann::json& parent = nlohmann::json::object());
-    /// An equirectangular map around everything.
-    void environment(const ImageF& map);
+    /// An equirectangular map around everything, turned by `rotation` radians about +Y.
+    void environment(const ImageF& map, float rotation = 0);
 
     /// Writes and compiles it; without any light it stays dark. Aborts where the compiler refuses it.
     /// @return the package, which lives as long as the builder

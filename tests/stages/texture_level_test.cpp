@@ -80,6 +80,9 @@ TEST_F(TextureLevel, IsThatOfAPixelsPartOfTheWall)
         const double fov = 0.05, distance = seen / (2 * std::tan(fov / 2));
         EXPECT_NEAR(contrast(cameraAt({0, 0, float(distance)}, {0, 0, -1}, fov, 0), 0), expected(texels), kTolerance)
             << texels;
+        Camera behind = cameraAt({0, 0, float(distance)}, {0, 0, -1}, fov, 0); // rays start half way, as wide as there
+        behind.near_plane = float(distance) / 2;
+        EXPECT_NEAR(contrast(behind, 0), expected(texels), kTolerance) << texels << ", with a near plane";
     }
     // Aslant the pixel covers more of the wall.
     const double seen = 1.6 * kTexel * kSide, cosine = 0.5;

@@ -5,6 +5,7 @@
 #include "compiler/encode.h"
 #include "compiler/gltf_material.h"
 #include "compiler/package_meta.h"
+#include "format/material.h"
 #include "tests/tools/temporary_folder.h"
 
 #include <cmath>
@@ -21,26 +22,11 @@ package::ChunkSource chunk(uint32_t id, const std::vector<T>& data)
 
 gpu::Material plainMaterial()
 {
-    return {.base_color = {1, 1, 1},
-            .alpha = 1,
-            .emission = {},
-            .alpha_cutoff = 0.5f,
-            .metallic = 0,
-            .roughness = 1,
-            .normal_scale = 1,
-            .transmission = 0,
-            .ior = 1.5f,
-            .specular = 0,
-            .specular_color = {},
-            .absorption = {},
-            .flags = 0,
-            .base_color_texture = gpu::kNone,
-            .metallic_roughness_texture = gpu::kNone,
-            .normal_texture = gpu::kNone,
-            .emissive_texture = gpu::kNone,
-            .transmission_texture = gpu::kNone,
-            .specular_texture = gpu::kNone,
-            .specular_color_texture = gpu::kNone};
+    gpu::Material m = package::defaultMaterial();
+    m.metallic = 0;
+    m.specular = 0;
+    m.specular_color = {};
+    return m;
 }
 
 TriangleScene::TriangleScene()

@@ -1,7 +1,7 @@
 // lumicut-compare as its user meets it: output, exit codes, files.
 #include "tests/tools/random_image.h"
 #include "tests/tools/run_program.h"
-#include "tools/image/write_image.h"
+#include "image/write_image.h"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -207,8 +207,8 @@ INSTANTIATE_TEST_SUITE_P(
                     Fault{"CropOutside", "@/a.exr @/b.exr --crop 0,0,21,10", 1, "20 x 10"},
                     Fault{"EmptyCrop", "@/a.exr @/b.exr --crop 5,5,5,6", 1, "does not lie"},
                     Fault{"MissingFile", "@/a.exr @/none.exr", 2,
-                          "none.exr: error: The file cannot be opened: No such file"},
-                    Fault{"Folder", "@ @/b.exr", 2, "folder"},
+                          "none.exr: error: cannot open the file: No such file"},
+                    Fault{"Folder", "@ @/b.exr", 2, "this is a directory"},
                     Fault{"SizesDiffer", "@/a.exr @/small.exr", 3, "10 x 10 pixels but the reference"},
                     Fault{"NotAnImage", "/bin/sh @/b.exr", 3, "not an OpenEXR"},
                     Fault{"WelchOfOnePicture", "--welch @/a.exr --against @/a.exr @/b.exr", 1, "at least 2 to each"},

@@ -1,6 +1,6 @@
 // Reproducible pictures for tests.
 #pragma once
-#include "tools/image/image.h"
+#include "image/image.h"
 
 #include <random>
 

@@ -341,6 +341,7 @@ TEST_P(Scenes, Compiles)
 const SceneCase kCases[] = {
     {"cornell", 30, 100, 0, {"front"}, false},
     {"caustics", 30000, 100000, 0, {"table"}},
+    {"materials", 70000, 80000, 0, {"row"}},
     {"atrium", 50000, 100000, 13, {"hall", "gallery", "glass"}},
     {"sheets", 30, 30, 0, {"inside"}},
     {"small", 30, 30, 0, {"inside"}},

@@ -3,8 +3,8 @@
 #include "runtime/renderer.h"
 #include "tools/bench/motion.h"
 #include "tools/compare/metrics.h"
-#include "tools/image/read_exr.h"
-#include "tools/image/write_image.h"
+#include "image/read_exr.h"
+#include "image/write_image.h"
 
 #include <nlohmann/json.hpp>
 

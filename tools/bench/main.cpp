@@ -1,5 +1,5 @@
 // lumicut-bench: the command line.
-#include <CLI/CLI.hpp> // before our check(), whose name its options use too
+#include "tools/cli/documentation.h" // before our check(), whose name its options use too
 
 #include "tools/bench/converge.h"
 #include "tools/bench/frame.h"
@@ -130,6 +130,7 @@ int main(int argc, char** argv)
     CLI::App app{"Measures what this machine does: with Lumicut packages, and on its own.", "lumicut-bench"};
     app.set_version_flag("--version", "lumicut-bench " LUMICUT_VERSION);
     app.require_subcommand(1);
+    addDocumentation(app);
     CommandLine line;
     addPackageCommands(app, line);
     addPrimitives(app, line.primitives);

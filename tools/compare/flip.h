@@ -3,7 +3,7 @@
 // Rendered High Dynamic Range Images", Eurographics 2021; constants and order of operations follow the authors'
 // release 1.6.
 #pragma once
-#include "tools/image/image.h"
+#include "image/image.h"
 
 /// 0.7 m in front of a screen 0.7 m and 3840 pixels wide: 67.02.
 inline constexpr float kPixelsPerDegree = 67.0206433f;

@@ -1,12 +1,12 @@
 // lumicut-compare: error metrics and difference pictures of two renderings.
+#include "tools/cli/documentation.h"
 #include "tools/compare/flip.h"
 #include "tools/compare/metrics.h"
 #include "tools/compare/picture.h"
 #include "tools/compare/read_images.h"
 #include "tools/compare/welch_command.h"
-#include "tools/image/write_image.h"
+#include "image/write_image.h"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -141,6 +141,7 @@ int main(int argc, char** argv)
         "4 out of memory, 5 unsupported image.",
         "lumicut-compare"};
     app.set_version_flag("--version", "lumicut-compare " LUMICUT_VERSION);
+    addDocumentation(app);
     app.add_option("REFERENCE", options.reference, "the image taken as right (.exr)");
     app.add_option("TEST", options.test, "the image to judge (.exr)");
     app.add_option("--png", options.png, "write reference, test and signed difference side by side (.png)");

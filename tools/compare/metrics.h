@@ -1,6 +1,6 @@
 // Numbers that say how far a rendering is from its reference.
 #pragma once
-#include "tools/image/image.h"
+#include "image/image.h"
 
 #include <array>
 

@@ -1,6 +1,6 @@
 #include "tools/compare/picture.h"
 
-#include "tools/image/write_image.h"
+#include "image/write_image.h"
 
 #include <algorithm>
 #include <array>

@@ -2,7 +2,7 @@
 #pragma once
 #include "tools/compare/flip.h"
 #include "tools/compare/welch.h"
-#include "tools/image/image.h"
+#include "image/image.h"
 
 #include <optional>
 

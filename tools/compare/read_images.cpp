@@ -1,6 +1,6 @@
 #include "tools/compare/read_images.h"
 
-#include "tools/image/read_exr.h"
+#include "image/read_exr.h"
 
 #include <fmt/format.h>
 

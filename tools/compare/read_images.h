@@ -1,7 +1,7 @@
 // Images of the command line, read and cut to one size.
 #pragma once
 #include "format/result.h"
-#include "tools/image/image.h"
+#include "image/image.h"
 
 #include <optional>
 #include <string>

@@ -1,6 +1,6 @@
 // Whether two ways of rendering give the same picture, told from several pictures of each.
 #pragma once
-#include "tools/image/image.h"
+#include "image/image.h"
 
 #include <array>
 #include <span>

@@ -3,7 +3,7 @@
 #include "tools/compare/metrics.h"
 #include "tools/compare/picture.h"
 #include "tools/compare/read_images.h"
-#include "tools/image/write_image.h"
+#include "image/write_image.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>

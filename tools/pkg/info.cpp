@@ -44,7 +44,9 @@ Json cameras(const lumicut::fb::Meta& meta)
                         {"forward", vec(camera->forward())},
                         {"up", vec(camera->up())},
                         {"vertical_fov", camera->vertical_fov()},
-                        {"orthographic_height", camera->orthographic_height()}});
+                        {"orthographic_height", camera->orthographic_height()},
+                        {"near_plane", camera->near_plane()},
+                        {"far_plane", camera->far_plane()}});
     return json;
 }
 
@@ -53,6 +55,7 @@ Json texturePages(const lumicut::fb::Meta& meta)
     Json json = Json::array();
     for (const lumicut::fb::TexturePage* page : *meta.texture_pages())
         json.push_back({{"encoding", lumicut::fb::EnumNameTextureEncoding(page->encoding())},
+                        {"tiled", page->tiled()},
                         {"width", page->width()},
                         {"height", page->height()},
                         {"layers", page->layers()},
@@ -136,19 +139,9 @@ Json describe(const package::Package& package)
                                {"height", e->height()},
                                {"importance_width", e->importance_width()},
                                {"importance_height", e->importance_height()},
-                               {"average_radiance", vec(e->average_radiance())}};
+                               {"average_radiance", vec(e->average_radiance())},
+                               {"rotation", e->rotation()}};
     return json;
-}
-
-/// Names come from files of others: no control characters to the terminal.
-std::string printable(std::string string)
-{
-    for (char& c : string)
-    {
-        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f)
-            c = '?';
-    }
-    return string;
 }
 
 std::string joined(const Json& strings)
@@ -182,8 +175,8 @@ void printTables(const package::Package& package)
 {
     const lumicut::fb::Meta& meta = package.meta();
     for (const lumicut::fb::TexturePage* page : *meta.texture_pages())
-        fmt::print("texture page {} layers of {} x {}, {} levels, {}\n", page->layers(), page->width(), page->height(),
-                   page->levels(), lumicut::fb::EnumNameTextureEncoding(page->encoding()));
+        fmt::print("texture page {} layers of {} x {}, {} levels, {}{}\n", page->layers(), page->width(), page->height(),
+                   page->levels(), lumicut::fb::EnumNameTextureEncoding(page->encoding()), page->tiled() ? ", tiles" : "");
     for (const package::ChunkEntry& entry : package.chunks())
         fmt::print("chunk        {} {:<2} {:>12} bytes{}\n", package::chunkName(entry.id), entry.index, entry.raw_bytes,
                    entry.codec == package::Codec::kZstd ? fmt::format(", {} compressed", entry.stored_bytes) : "");
@@ -214,13 +207,24 @@ void printText(const std::filesystem::path& path, const package::Package& packag
     fmt::print("lights       {}{}, {:.4g} W\n", package.lights().size(), kinds, s.total_light_power());
     fmt::print("caustics     {} targets\n", package.causticTargets().size());
     if (const lumicut::fb::Environment* e = meta.environment())
-        fmt::print("environment  {} x {}\n", e->width(), e->height());
+        fmt::print("environment  {} x {}, turned by {:.6g} degrees\n", e->width(), e->height(),
+                   e->rotation() * 180 / std::numbers::pi);
     printCameras(meta);
     printTables(package);
     for (const Json& warning : list(p.warnings()))
         fmt::print("warning      {}\n", printable(warning.get<std::string>()));
 }
 } // namespace
+
+std::string printable(std::string string)
+{
+    for (char& c : string)
+    {
+        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f)
+            c = '?';
+    }
+    return string;
+}
 
 ExitCode info(const std::filesystem::path& path, TextFormat format)
 {

@@ -1,6 +1,6 @@
 #include "tools/pkg/commands.h"
 
-#include <CLI/CLI.hpp>
+#include "tools/cli/documentation.h"
 
 namespace
 {
@@ -16,13 +16,19 @@ struct Arguments
     std::filesystem::path file;
     TextFormat format = TextFormat::kText;
     std::vector<std::filesystem::path> files;
+    std::filesystem::path other;
+    std::string what;
+    std::filesystem::path output;
     BundleOptions bundle{.packages = {}, .output = {}, .player = defaultPlayer()};
 };
 
 void declare(CLI::App& app, Arguments& arguments)
 {
     app.require_subcommand(1);
-    app.set_version_flag("--version", LUMICUT_VERSION);
+    app.set_version_flag("--version", "lumicut-pkg " LUMICUT_VERSION);
+    app.footer("Exit codes: 0 ok, 1 usage, 2 I/O, 3 invalid package, 4 out of memory, 5 unsupported; of diff 0 same,\n"
+               "1 different, 2 trouble.");
+    addDocumentation(app);
 
     const std::map<std::string, TextFormat> formats{{"text", TextFormat::kText}, {"json", TextFormat::kJson}};
     CLI::App* info_app = app.add_subcommand("info", "Print what a package holds");
@@ -33,6 +39,21 @@ void declare(CLI::App& app, Arguments& arguments)
 
     CLI::App* validate_app = app.add_subcommand("validate", "Check packages; silent where all is well");
     validate_app->add_option("FILE", arguments.files, "Packages (.lumi)")->required();
+
+    CLI::App* diff_app = app.add_subcommand("diff", "Print what differs between two packages");
+    diff_app->add_option("A", arguments.file, "Package (.lumi)")->required();
+    diff_app->add_option("B", arguments.other, "Package (.lumi)")->required();
+    diff_app->add_option("--format", arguments.format, "text or json")
+        ->transform(CLI::CheckedTransformer(formats, CLI::ignore_case))
+        ->default_str("text");
+
+    CLI::App* extract_app = app.add_subcommand("extract", "Write one thing of a package to a file of its own");
+    extract_app->add_option("FILE", arguments.file, "Package (.lumi)")->required();
+    extract_app
+        ->add_option("WHAT", arguments.what,
+                     "geometry (.glb), environment (.exr), texture/PAGE/LAYER (.png), or a chunk's raw bytes: NODE, TEXP/1")
+        ->required();
+    extract_app->add_option("-o,--output", arguments.output, "File to write")->required();
 
     CLI::App* bundle_app = app.add_subcommand("bundle", "Pack player and packages into an archive that runs elsewhere");
     bundle_app->add_option("SCENE", arguments.bundle.packages, "Packages (.lumi); the first is the default")
@@ -53,11 +74,16 @@ int main(int argc, char** argv)
     }
     catch (const CLI::ParseError& error)
     {
-        return int(app.exit(error) == 0 ? ExitCode::kOk : ExitCode::kUsage);
+        const bool diff_asked = argc > 1 && std::string_view(argv[1]) == "diff"; // its 1 says something else
+        return app.exit(error) == 0 ? int(ExitCode::kOk) : diff_asked ? kDiffTrouble : int(ExitCode::kUsage);
     }
     if (app.got_subcommand("info"))
         return int(info(arguments.file, arguments.format));
     if (app.got_subcommand("validate"))
         return int(validate(arguments.files));
+    if (app.got_subcommand("diff"))
+        return diff(arguments.file, arguments.other, arguments.format);
+    if (app.got_subcommand("extract"))
+        return int(extract(arguments.file, arguments.what, arguments.output));
     return int(bundle(arguments.bundle));
 }

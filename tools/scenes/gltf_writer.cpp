@@ -1,7 +1,7 @@
 #include "tools/scenes/gltf_writer.h"
 
 #include "format/check.h"
-#include "tools/image/write_image.h"
+#include "image/write_image.h"
 
 #include <cstring>
 
@@ -167,6 +167,8 @@ uint32_t GltfWriter::addMaterial(const MaterialDescription& material)
         }
         extend("KHR_materials_volume", volume);
     }
+    for (const auto& [name, values] : material.extensions.items())
+        extend(name.c_str(), values);
     json_["materials"].push_back(json);
     return uint32_t(json_["materials"].size() - 1);
 }

@@ -27,6 +27,7 @@ struct MaterialDescription
     float attenuation_distance = 0; // metres
     std::optional<uint32_t> base_color_texture, normal_texture, metallic_roughness_texture;
     float normal_scale = 1;
+    nlohmann::ordered_json extensions; // others, by name
 };
 
 class GltfWriter

@@ -1,8 +1,8 @@
 // lumicut-scenes: writes its scenes as binary glTF files. The same program writes the same bytes.
-#include "tools/image/write_image.h"
+#include "image/write_image.h"
 #include "tools/scenes/scenes.h"
+#include "tools/cli/documentation.h"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 namespace
@@ -14,22 +14,30 @@ int fail(const std::string& file, const Error& error)
     return int(error.code);
 }
 
-int run(const std::string& folder, const std::vector<std::string>& names)
+int write(const std::filesystem::path& folder, const std::string& name, const GltfWriter& gltf)
+{
+    const std::vector<uint8_t> bytes = gltf.glb();
+    const std::filesystem::path path = folder / (name + ".glb");
+    if (const Status written = writeFile(path, bytes); !written)
+        return fail(path.string(), written.error());
+    fmt::print("{}: {} triangles, {} bytes\n", path.string(), gltf.triangleCount(), bytes.size());
+    return int(ExitCode::kOk);
+}
+
+int run(const std::string& folder, const std::vector<std::string>& names, uint32_t terrain_triangles)
 {
     std::error_code problem;
     std::filesystem::create_directories(folder, problem);
     if (problem)
         return fail(folder, {ExitCode::kIo, fmt::format("The folder cannot be created: {}.", problem.message())});
+    if (terrain_triangles != 0)
+        return write(folder, "terrain", terrainScene(terrain_triangles));
     for (const Scene& scene : allScenes())
     {
         if (!names.empty() && std::find(names.begin(), names.end(), scene.name) == names.end())
             continue;
-        const GltfWriter gltf = scene.build();
-        const std::vector<uint8_t> bytes = gltf.glb();
-        const std::filesystem::path path = std::filesystem::path(folder) / (std::string(scene.name) + ".glb");
-        if (const Status written = writeFile(path, bytes); !written)
-            return fail(path.string(), written.error());
-        fmt::print("{}: {} triangles, {} bytes\n", path.string(), gltf.triangleCount(), bytes.size());
+        if (const int code = write(folder, scene.name, scene.build()); code != int(ExitCode::kOk))
+            return code;
     }
     return int(ExitCode::kOk);
 }
@@ -45,6 +53,7 @@ int main(int argc, char** argv)
                  "lumicut-scenes"};
     app.set_version_flag("--version", "lumicut-scenes " LUMICUT_VERSION);
     app.add_option("OUTDIR", folder, "where to write; made if it is not there")->required();
+    addDocumentation(app);
     std::vector<std::string> known;
     std::string list = "Scenes:\n";
     for (const Scene& scene : allScenes())
@@ -53,7 +62,12 @@ int main(int argc, char** argv)
         list += fmt::format("  {:<17} {}\n", scene.name, scene.about);
     }
     app.footer(list);
-    app.add_option("NAME", names, "which scenes, of those below (all)")->check(CLI::IsMember(known));
+    CLI::Option* const some =
+        app.add_option("NAME", names, "which scenes, of those below (all)")->check(CLI::IsMember(known));
+    uint32_t terrain_triangles = 0;
+    app.add_option("--terrain", terrain_triangles, "instead write terrain.glb, a landscape of about this many triangles")
+        ->check(CLI::Range(1000, 50'000'000))
+        ->excludes(some);
     try
     {
         app.parse(argc, argv);
@@ -62,5 +76,5 @@ int main(int argc, char** argv)
     {
         return app.exit(problem) == 0 ? int(ExitCode::kOk) : int(ExitCode::kUsage);
     }
-    return run(folder, names);
+    return run(folder, names, terrain_triangles);
 }

@@ -6,6 +6,7 @@ namespace
 constexpr Scene kScenes[] = {
     {"cornell", cornellScene, "a Cornell box of 1 m with a lamp in its ceiling"},
     {"caustics", causticsScene, "a glass sphere and a gold ring under a small lamp"},
+    {"materials", materialsScene, "spheres with coats, sheen, grain, a thin film, dispersion and translucence"},
     {"atrium", atriumScene, "a two-storey hall in the sun, with lanterns, metal and glass"},
     {"sheets", [] { return sheetsScene(); }, "a room of single sheets, the sun on their outside"},
     {"small", [] { return sheetsScene(1e-3); }, "the same a thousandth as large"},

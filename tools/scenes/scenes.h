@@ -20,6 +20,9 @@ GltfWriter cornellScene();
 /// A table with a glass sphere and a gold ring under a small bright lamp.
 GltfWriter causticsScene();
 
+/// A row of spheres, each with a layer that an extension of glTF adds.
+GltfWriter materialsScene();
+
 /// A two-storey hall with colonnades, banners, sun through a skylight, lanterns, a mirror, metal and glass.
 GltfWriter atriumScene();
 
@@ -52,3 +55,6 @@ GltfWriter flippedScene(bool against);
 
 /// A floor in dim sun; 30 m above it, with or without, a lamp 2 mm over an opaque shield that hides it from the floor.
 GltfWriter shieldScene(bool lamp);
+
+/// About as many triangles as asked for, 1000 and more: rolling ground with boulders. Not among allScenes().
+GltfWriter terrainScene(uint32_t triangles);

@@ -1,6 +1,6 @@
 #include "tools/scenes/textures.h"
 
-#include "tools/image/write_image.h"
+#include "image/write_image.h"
 
 #include <algorithm>
 #include <functional>

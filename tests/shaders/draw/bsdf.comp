@@ -5,12 +5,12 @@
 #include "tests/shaders/draw/draw.h"
 #include "tests/shaders/draw/independent.glsl"
 
-// Directions that the BSDF chooses, or the normals that are visible from one.
+// Directions that the BSDF chooses, normals that are visible from one, or the BSDF's value towards even directions.
 
 layout(local_size_x = kDrawGroupSize) in;
 layout(push_constant, scalar) uniform Params { BsdfDrawParams params; };
 
-layout(set = 1, binding = 0, scalar) writeonly buffer Draws { DirectionDraw draws[]; };
+layout(set = 1, binding = 0, scalar) writeonly buffer Draws { BsdfDraw draws[]; };
 
 Bsdf bsdfOfParams()
 {
@@ -24,7 +24,28 @@ Bsdf bsdfOfParams()
     m.ior = params.ior;
     m.emission = vec3(0.0);
     m.flags = params.flags;
-    return bsdfAt(m, params.front == 1u);
+    m.clearcoat = params.clearcoat;
+    m.clearcoat_roughness = params.clearcoat_roughness;
+    m.sheen_color = vec3(params.sheen);
+    m.sheen_roughness = params.sheen_roughness;
+    m.anisotropy = params.anisotropy;
+    m.grain = vec2(1.0, 0.0);
+    m.iridescence = params.iridescence;
+    m.iridescence_ior = params.film_ior;
+    m.iridescence_thickness = params.film_thickness;
+    m.dispersion = 0.0;
+    m.diffuse_transmission = params.diffuse_transmission;
+    m.diffuse_transmission_color = vec3(params.base_color);
+    return bsdfAt(m, params.front == 1u, vec3(0.0, 0.0, 1.0));
+}
+
+/// Seen from the other side where wi lies there: the material is then taken for thin.
+BsdfDraw valueTowards(Bsdf b, vec3 wi)
+{
+    BsdfValue f = evaluateBsdf(b, params.wo, wi);
+    float side = wi.z < 0.0 ? -1.0 : 1.0;
+    BsdfValue back = evaluateBsdf(b, vec3(wi.xy, side * wi.z), vec3(params.wo.xy, side * params.wo.z));
+    return BsdfDraw(wi, f.pdf, f.diffuse + f.specular, back.diffuse.r + back.specular.r);
 }
 
 void main()
@@ -36,12 +57,18 @@ void main()
     vec2 u = nextPair(s);
     float choice = nextPair(s).x;
     Bsdf b = bsdfOfParams();
-    if (params.visible_normals == 1u)
+    if (params.what == kDrawVisibleNormals)
     {
-        vec3 h = sampleVisibleNormal(params.wo, b.alpha, u);
-        draws[i] = DirectionDraw(h, visibleNormalPdf(params.wo, h, b.alpha));
+        vec3 h = sampleVisibleNormal(params.wo, alphas(b), u);
+        draws[i] = BsdfDraw(h, visibleNormalPdf(params.wo, h, alphas(b)), vec3(1.0), 0.0);
+        return;
+    }
+    if (params.what == kDrawValues)
+    {
+        float z = 1.0 - 2.0 * u.x, r = sqrt(max(0.0, 1.0 - z * z)), phi = 2.0 * kPi * u.y;
+        draws[i] = valueTowards(b, vec3(r * cos(phi), r * sin(phi), z));
         return;
     }
     BsdfSample drawn = sampleBsdf(b, params.wo, choice, u);
-    draws[i] = DirectionDraw(drawn.wi, drawn.pdf);
+    draws[i] = BsdfDraw(drawn.wi, drawn.pdf, drawn.weight, 0.0);
 }

@@ -1,4 +1,4 @@
-// Draws from samplers, one a thread. Shared by tests/shaders/draw/*.comp and tests/stages/*.cpp.
+// Draws from samplers, and what textures show, one a thread. Shared by tests/shaders/draw/*.comp and tests/stages/*.cpp.
 #ifndef TESTS_SHADERS_DRAW_H
 #define TESTS_SHADERS_DRAW_H
 #include "shaders/photons/photons.h"
@@ -16,11 +16,15 @@ struct DrawParams
 };
 GPU_SIZE(DrawParams, 24);
 
+GPU_CONST uint kDrawDirections = 0u;     // that the BSDF chooses
+GPU_CONST uint kDrawVisibleNormals = 1u; // of its microfacets
+GPU_CONST uint kDrawValues = 2u;         // of the BSDF towards directions of equal solid angle
+
 struct BsdfDrawParams
 {
     uint count;
     uint seed;
-    uint visible_normals; // 1: draw those alone
+    uint what;            // kDraw*
     uint front;           // 1: seen from the front
     uint flags;           // kMaterial*
     float base_color;
@@ -30,8 +34,17 @@ struct BsdfDrawParams
     float specular;
     float ior;
     vec3 wo; // unit, local
+    float clearcoat;
+    float clearcoat_roughness;
+    float sheen; // the same in every channel
+    float sheen_roughness;
+    float anisotropy;
+    float iridescence;
+    float film_ior;
+    float film_thickness; // nm
+    float diffuse_transmission;
 };
-GPU_SIZE(BsdfDrawParams, 56);
+GPU_SIZE(BsdfDrawParams, 92);
 
 struct DirectionDraw
 {
@@ -39,6 +52,22 @@ struct DirectionDraw
     float pdf;      // that the sampler gives, per steradian; 0: nothing was drawn
 };
 GPU_SIZE(DirectionDraw, 16);
+
+struct BsdfDraw
+{
+    vec3 direction; // unit
+    float pdf;      // per steradian, 0 for a delta lobe and where nothing was drawn
+    vec3 weight;    // f |cos| / pdf of a chosen direction, 0: absorbed; f of one that was given
+    float reverse;  // red of f with both directions exchanged, of one that was given
+};
+GPU_SIZE(BsdfDraw, 32);
+struct TextureDrawParams
+{
+    uint count;
+    uint texture; // index into TextureRefs
+    uint normal;  // 1: as a normal map, -1 to 1
+};
+GPU_SIZE(TextureDrawParams, 12);
 
 struct LightDraw
 {
@@ -55,6 +84,14 @@ struct CellDraw
     float rest; // what is left of the random number, 0..1
 };
 GPU_SIZE(CellDraw, 8);
+
+struct PairDraw
+{
+    vec2 pair;
+    float weight; // density of the uniform pair over this one's
+    uint cell;    // that its direction lies in
+};
+GPU_SIZE(PairDraw, 16);
 
 GPU_NAMESPACE_END
 #endif

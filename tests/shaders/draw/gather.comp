@@ -18,6 +18,6 @@ void main()
     uint i = gl_GlobalInvocationID.x;
     if (i >= params.count)
         return;
-    vec3 direction = gatherDirection(params.point, i, i % kRays, kRays, params.seed);
+    vec3 direction = frameAround(params.point) * cosineDirection(gatherPair(i, i % kRays, kRays, params.seed));
     draws[i] = DirectionDraw(direction, dot(direction, params.point) * kInvPi);
 }

@@ -1,0 +1,25 @@
+// OpenEXR and PNG out. Needs nothing of the project but result.h, and no library but OpenEXR and stb.
+#pragma once
+#include "format/result.h"
+#include "image/image.h"
+
+#include <filesystem>
+#include <span>
+
+/// Writes `bytes` to a temporary name beside `path`, then renames it: no half-written file is ever seen under `path`.
+/// Errors: kIo with the system's reason; the temporary file is gone then.
+Status writeFile(const std::filesystem::path& path, std::span<const uint8_t> bytes);
+
+/// 32-bit float channels R, G, B, ZIP compression. The same image gives the same bytes.
+Status writeExr(const std::filesystem::path& path, const ImageF& image);
+
+/// `texels`: uint8_t[channel_count * width * height], row 0 on top, sRGB-encoded colour as PNG readers expect.
+Status writePng(const std::filesystem::path& path, uint32_t width, uint32_t height, uint32_t channel_count,
+                std::span<const uint8_t> texels);
+
+/// The bytes that writePng() would write.
+std::vector<uint8_t> encodePng(uint32_t width, uint32_t height, uint32_t channel_count,
+                               std::span<const uint8_t> texels);
+
+/// IEC 61966-2-1 transfer curve of `linear` clamped to 0..1, as a byte; not-a-number becomes 0.
+uint8_t srgbByte(float linear);

@@ -1,0 +1,10 @@
+// Whatever the bytes: reading a Radiance picture ends in an error or in pixels that lie in it.
+#include "image/read_hdr.h"
+#include "tests/image/collect.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size)
+{
+    Collected collected;
+    (void)readHdr({reinterpret_cast<const std::byte*>(data), size}, collected);
+    return 0;
+}

@@ -1,4 +1,0 @@
-// The tests' PNG decoder.
-#define STB_IMAGE_IMPLEMENTATION
-#define STBI_ONLY_PNG
-#include <stb_image.h>
