@@ -267,7 +267,8 @@ Result<CompileReport> runPipeline(const CompileOptions& options)
     watch.stage("textures", fmt::format("{} images, {} pages", scene.images.size(), textures.pages.size()));
 
     if (const Warnings damage = damageAmong(scene.warnings); options.strict && !damage.empty())
-        return damageError(damage, fmt::format("{} items are damaged; without --strict the package is made", damage.size()));
+        return damageError(damage, fmt::format("{} damaged; without --strict the package is made",
+                                               damage.size() == 1 ? "an item is" : fmt::format("{} items are", damage.size())));
     report.warnings = scene.warnings;
     report.meta = makeMeta(options, scene, bvh, lights, textures, sky);
     noteInputs(file->files->list(), environment_content, *report.meta.provenance);
