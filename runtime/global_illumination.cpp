@@ -90,8 +90,13 @@ GlobalIllumination::GlobalIllumination(const Device& device, const SceneGpu& sce
 {
     if (GuideStage::helps(scene))
         guide_.emplace(device, scene, settings.photon_count);
-    if (settings.denoise_passes > 0 && (direct_.isNoisy() || has_specular_))
-        denoise_.emplace(device, scene, width * height);
+    const bool filters = settings.denoise_passes > 0 && (direct_.isNoisy() || has_specular_);
+    if (filters || goesOn(settings))
+        signals_.emplace(device, scene, width * height);
+    if (settings.history_frames > 0)
+        history_.emplace(device, width * height);
+    if (filters)
+        denoise_.emplace(device, width * height);
 }
 
 FrameTraits GlobalIllumination::traits() const
@@ -142,30 +147,47 @@ const Buffer& GlobalIllumination::record(Recorder& rec, const RayStage& rays, co
     }
     if (plan.caustics)
         recordCaustics(c);
-    if (plan.denoise_passes > 0)
-        recordDenoise(c);
+    if (plan.denoise_passes > 0 || plan.remembers || plan.antialiases)
+        recordSignals(c);
     const Buffer& picture = compose_.record(rec, light_, plan, width_ * height_);
     if (settings.view != gpu::kViewNone)
         recordView(c, picture);
     return picture;
 }
 
-void GlobalIllumination::recordDenoise(const Context& c) const
+/// What is noisy becomes the mean of the frames before, as far as they saw it, and of its surroundings.
+void GlobalIllumination::recordSignals(const Context& c)
 {
-    const auto filter = [&](const Buffer& light, bool glossy)
+    const SignalBuffers signals = signals_->record(c.rec, c.frame, c.surface, light_);
+    if (c.plan.remembers)
+        history_->record(c.rec, {.signals = signals,
+                                 .surface = c.surface,
+                                 .light = light_,
+                                 .frame = c.frame,
+                                 .most_frames = c.settings.history_frames});
+    const auto filter = [&](const Buffer& signal, const Buffer& light)
     {
-        denoise_->record(c.rec, {.points = c.surface.points,
-                                 .light = light,
-                                 .width = width_,
-                                 .height = height_,
-                                 .passes = c.plan.denoise_passes,
-                                 .pixel_angle = c.frame.camera.orthographic ? 0 : pixelSide(c.frame.camera),
-                                 .glossy = glossy});
+        const Buffer& filtered =
+            c.plan.denoise_passes > 0
+                ? denoise_->record(c.rec, {.signal = signal,
+                                           .guides = signals.guides,
+                                           .width = width_,
+                                           .height = height_,
+                                           .passes = c.plan.denoise_passes,
+                                           .pixel_angle = c.frame.camera.orthographic ? 0 : pixelSide(c.frame.camera)})
+                : signal;
+        if (c.plan.remembers || c.plan.denoise_passes > 0)
+            signals_->apply(c.rec, signal, filtered, light, c.pixel_count);
     };
     if (c.plan.direct && direct_.isNoisy())
-        filter(light_.direct, false);
+        filter(signals.direct, light_.direct);
     if (c.plan.glossy)
-        filter(light_.glossy, true);
+        filter(signals.glossy, light_.glossy);
+}
+
+std::optional<double> GlobalIllumination::rememberedShare(const Device& device) const
+{
+    return history_ ? std::optional(history_->rememberedShare(device, width_ * height_)) : std::nullopt;
 }
 
 void GlobalIllumination::recordDirect(const Context& c) const
@@ -185,7 +207,7 @@ PhotonStage::Input GlobalIllumination::photonInput(const Context& c) const
 {
     return {.path_count = c.settings.photon_count,
             .first_path = c.frame.accumulated * c.settings.photon_count,
-            .seed = c.frame.camera.seed,
+            .seed = c.frame.map_seed,
             .guide = guide_ ? &*guide_ : nullptr};
 }
 
@@ -363,7 +385,7 @@ void GlobalIllumination::recordCaustics(const Context& c)
     const uint32_t path_count = has_caustic_targets_ ? settings.caustic_photons : settings.caustic_photons / 8;
     const PhotonStage::Input in{.path_count = path_count,
                                 .first_path = c.frame.accumulated * path_count,
-                                .seed = c.frame.camera.seed + gpu::kTermCaustics};
+                                .seed = c.frame.map_seed + gpu::kTermCaustics};
     if (!isThere(c, caustic_map_, in))
         caustic_tree_.record(c.rec, caustic_photons_.record(c.rec, c.rays, in));
     caustics_.record(c.rec, caustic_tree_.output(),

@@ -33,6 +33,11 @@ uint32_t denoisePasses(const Settings& settings, const FrameTraits& traits, cons
 }
 } // namespace
 
+bool goesOn(const Settings& settings)
+{
+    return settings.view == gpu::kViewNone && (settings.history_frames > 0 || settings.antialias_frames > 0);
+}
+
 FramePlan planFrame(const Settings& settings, const FrameTraits& traits, const FrameInfo& frame)
 {
     FramePlan plan{};
@@ -55,6 +60,8 @@ FramePlan planFrame(const Settings& settings, const FrameTraits& traits, const F
     // diffuse, whose third reflections are too faint to matter.
     plan.chain_depth = traits.has_mirrors ? settings.specular_depth : std::min(settings.specular_depth, 2u);
     plan.denoise_passes = denoisePasses(settings, traits, frame);
+    plan.remembers = settings.history_frames > 0 && goesOn(settings) && !frame.stands();
+    plan.antialiases = settings.antialias_frames > 0 && goesOn(settings) && !frame.stands();
     plan.sure_reflectance = frame.stands() ? kSureStanding : kSureInMotion;
     return plan;
 }

@@ -25,9 +25,14 @@ struct FramePlan
     bool harmonics;          // rough reflection comes from the samples' harmonics where they can tell it
     uint32_t chain_depth;    // delta events that gathering rays follow
     uint32_t denoise_passes; // of the filter over what is noisy; 0: none
+    bool remembers;          // light goes into histories, and out of them where frame.previous is there
+    bool antialiases;        // the picture is blended with the last one
     float sure_reflectance;  // what reflects this much sends a glossy ray from every pixel
 
     bool operator==(const FramePlan&) const = default;
 };
+
+/// Whether frames of such settings may go on from what the frame before them found.
+bool goesOn(const Settings& settings);
 
 FramePlan planFrame(const Settings& settings, const FrameTraits& traits, const FrameInfo& frame);

@@ -14,6 +14,11 @@ PrimaryStage::PrimaryStage(const Device& device, const SceneGpu& scene, uint32_t
 {
 }
 
+float PrimaryStage::textureWidth(const gpu::CameraParams& camera)
+{
+    return kTextureBlur * pixelSide(camera) / float(camera.first_sample + 1);
+}
+
 SurfaceBuffers PrimaryStage::record(Recorder& rec, const RayStage& rays, const Input& in) const
 {
     const auto scope = rec.scope("primary");
@@ -23,8 +28,7 @@ SurfaceBuffers PrimaryStage::record(Recorder& rec, const RayStage& rays, const I
 
     const RayQueue* queue = &queue_;
     const RayQueue* next = &next_queue_;
-    // The frames of a standing picture share out its pixels: each shows its own part, so that textures come out sharp.
-    const float width = kTextureBlur * pixelSide(in.camera) / float(in.camera.first_sample + 1);
+    const float width = textureWidth(in.camera);
     const uint32_t depth_limit = has_specular_ ? in.specular_depth : 0;
     for (uint32_t depth = 0; depth <= depth_limit; ++depth)
     {

@@ -10,6 +10,10 @@ public:
     /// Of a pixel: what textures are blurred over, a little less than one sample a pixel can show.
     static constexpr float kTextureBlur = 0.7f;
 
+    /// Of a ray at distance 1, metres (perspective), or of every ray (orthographic). The frames of a standing picture share out
+    /// its pixels: each shows its own part, so that textures come out sharp.
+    static float textureWidth(const gpu::CameraParams& camera);
+
     PrimaryStage(const Device& device, const SceneGpu& scene, uint32_t max_pixels);
 
     struct Input

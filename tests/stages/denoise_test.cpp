@@ -19,6 +19,7 @@ protected:
     {
         const auto path = builder_.compile();
         scene_ = load(path);
+        camera_ = camera;
         points_.emplace(device(), *scene_, path, camera, kWidth, kHeight);
         pixel_angle_ = camera.vertical_fov > 0 ? 2 * std::tan(camera.vertical_fov / 2) / kHeight : 0;
     }
@@ -37,20 +38,27 @@ protected:
 
     std::vector<gpu::vec3> filtered(const std::vector<gpu::vec3>& light, uint32_t passes)
     {
-        const Buffer radiance = upload("test.radiance", light);
-        const DenoiseStage stage(device(), *scene_, kPixels);
+        const Buffer input = upload("test.light", light);
+        const LightBuffers buffers(device(), kPixels);
+        SignalsStage signals(device(), *scene_, kPixels);
+        const DenoiseStage stage(device(), kPixels);
+        const FrameInfo frame{.camera = cameraParams(camera_, kWidth, kHeight)};
         submit(*scene_,
                [&](Recorder& rec)
                {
-                   stage.record(rec, {.points = points_->gpu->points,
-                                      .light = radiance,
-                                      .width = kWidth,
-                                      .height = kHeight,
-                                      .passes = passes,
-                                      .pixel_angle = float(pixel_angle_),
-                                      .glossy = false});
+                   buffers.clear(rec);
+                   rec.copy(input, buffers.direct, kPixels * sizeof(gpu::vec3));
+                   const SignalBuffers made = signals.record(rec, frame, *points_->gpu, buffers);
+                   const Buffer& filtered = stage.record(rec, {.signal = made.direct,
+                                                               .guides = made.guides,
+                                                               .width = kWidth,
+                                                               .height = kHeight,
+                                                               .passes = passes,
+                                                               .pixel_angle = float(pixel_angle_)});
+                   rec.clear(buffers.direct); // where nothing reflects, nothing is written
+                   signals.apply(rec, made.direct, filtered, buffers.direct, kPixels);
                });
-        return contents<gpu::vec3>(radiance, kPixels);
+        return contents<gpu::vec3>(buffers.direct, kPixels);
     }
 
     Double3 reflectanceAt(uint32_t pixel) const
@@ -61,6 +69,7 @@ protected:
 
     SceneBuilder builder_;
     std::unique_ptr<SceneGpu> scene_;
+    Camera camera_;
     std::optional<ShadingPoints> points_;
     double pixel_angle_ = 0; // radians
 };
