@@ -88,6 +88,12 @@ bool isRough(const gpu::Material& material)
 {
     return material.roughness > gpu::kHarmonicsFrom && (material.specular > 0 || material.metallic > 0);
 }
+
+bool hasSmoothLayer(const gpu::Material& material)
+{
+    const bool smooth = material.roughness < gpu::kSmoothRoughness && material.metallic < 1 && material.specular > 0;
+    return smooth || (material.clearcoat > 0 && material.clearcoat_roughness < gpu::kSmoothRoughness);
+}
 } // namespace
 
 Result<std::unique_ptr<SceneGpu>> SceneGpu::create(const Device& device, const package::Package& package)
@@ -133,6 +139,7 @@ Result<std::unique_ptr<SceneGpu>> SceneGpu::create(const Device& device, const p
     scene->features_ = sceneFeatures(package);
     scene->constants_ = {{{"kSceneFeatures", scene->features_}, {"kUsedTexturePages", package.meta().texture_pages()->size()}}};
     scene->reflects_roughly_ = std::ranges::any_of(package.materials(), isRough);
+    scene->has_smooth_layers_ = std::ranges::any_of(package.materials(), hasSmoothLayer);
     scene->createImages(package);
     scene->createDescriptorSet();
     return scene;

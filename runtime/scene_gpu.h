@@ -35,6 +35,8 @@ public:
     bool hasFeature(uint32_t features) const { return (features_ & features) != 0; }
     /// Some opaque material reflects so roughly that spherical harmonics can stand for rays (shaders/gather/harmonics.h).
     bool reflectsRoughly() const { return reflects_roughly_; }
+    /// Some material is a mirror over something else: glass, or a smooth layer. What textures say of it is left out.
+    bool hasSmoothLayers() const { return has_smooth_layers_; }
     /// Replaces light `index` from the next kernel of `rec` on; with the kind and pmf it has, on which other tables rest.
     void setLight(Recorder& rec, uint32_t index, const gpu::Light& light);
     /// gpu::ViewScale, as every kernel sees it: of the whole scene until a ViewScaleStage sets it.
@@ -58,6 +60,7 @@ private:
     uint32_t features_ = 0; // kFeature*
     std::array<Constant, 2> constants_{};
     bool reflects_roughly_ = false;
+    bool has_smooth_layers_ = false;
     Buffer info_buffer_;
     std::vector<Buffer> buffers_; // by binding, kBvhNodesBinding first
     std::vector<const Buffer*> bound_; // by binding
