@@ -44,56 +44,67 @@ Renderer::Renderer(const Device& device, const SceneGpu& scene, Mode mode, uint3
     {
         primary_.emplace(device, scene, width * height);
         direct_.emplace(device, scene, width * height);
+        direct_light_ = device.array<gpu::vec3>("renderer.direct_light", width * height);
     }
+}
+
+/// What this frame continues: a standing picture where neither camera nor lights have changed, else the last frame only.
+FrameInfo Renderer::beginFrame(Recorder& rec, const Camera& camera, const Settings& settings, uint32_t seed)
+{
+    FrameInfo frame{.camera = cameraParams(camera, width_, height_), .number = frame_count_++};
+    frame.camera.seed = seed;
+    const bool lights_stand = last_lights_ == scene_.lightsVersion();
+    if (!last_camera_ || !lights_stand || !sameView(*last_camera_, frame.camera))
+    {
+        resolve_.restart(rec);
+        if (lights_stand)
+            frame.previous = last_camera_;
+    }
+    last_camera_ = frame.camera;
+    last_lights_ = scene_.lightsVersion();
+    const bool repeat = gi_ && showsOneFrame(settings.view); // a debug view stands still
+    frame.accumulated = repeat ? 0 : resolve_.sampleCount();
+    frame.camera.first_sample = frame.accumulated;
+    return frame;
 }
 
 void Renderer::record(Recorder& rec, const Camera& camera, const Settings& settings, uint32_t seed, uint32_t sample_count)
 {
     check(sample_count >= 1 && sample_count <= max_batch_, "{} samples in a frame of at most {}", sample_count, max_batch_);
-    gpu::CameraParams view = cameraParams(camera, width_, height_);
-    view.seed = seed;
-    const bool moved = last_camera_ && !sameView(*last_camera_, view);
-    if (!last_camera_ || moved || last_lights_ != scene_.lightsVersion())
-        resolve_.restart(rec);
-    last_camera_ = view;
-    last_lights_ = scene_.lightsVersion();
-    view.sample_count = sample_count;
-    const bool repeat = gi_ && showsOneFrame(settings.view); // a debug view stands still
-    view.first_sample = repeat ? 0 : resolve_.sampleCount();
-    const uint32_t pixel_count = width_ * height_;
-
-    if (reference_)
-    {
-        const Buffer& radiance = reference_->record(
-            rec, rays_, {.camera = view, .depth_limit = settings.reference_depth, .term = settings.term});
-        resolve_.accumulate(rec, radiance, pixel_count, sample_count);
-        return;
-    }
+    FrameInfo frame = beginFrame(rec, camera, settings, seed);
     if (gi_)
-    {
-        recordGi(rec, view, settings, moved);
-        return;
-    }
-    const auto primary = primary_->record(rec, rays_, {.camera = view, .specular_depth = settings.specular_depth});
-    direct_->record(rec, rays_,
-                    {.points = primary.points,
-                     .radiance = primary.radiance,
-                     .noisy = primary.radiance,
-                     .point_count = pixel_count,
-                     .light_sample_count = settings.direct_samples,
-                     .candidate_count = settings.direct_candidates,
-                     .first_sample = view.first_sample,
-                     .seed = seed});
-    resolve_.accumulate(rec, primary.radiance, pixel_count, 1);
+        return recordGi(rec, frame, settings);
+    if (!reference_)
+        return recordDirect(rec, frame, settings);
+    frame.camera.sample_count = sample_count;
+    const Buffer& radiance = reference_->record(
+        rec, rays_, {.camera = frame.camera, .depth_limit = settings.reference_depth, .term = settings.term});
+    resolve_.accumulate(rec, radiance, width_ * height_, sample_count);
 }
 
-void Renderer::recordGi(Recorder& rec, const gpu::CameraParams& view, const Settings& settings, bool moved)
+void Renderer::recordDirect(Recorder& rec, const FrameInfo& frame, const Settings& settings)
+{
+    const SurfaceBuffers surface = primary_->record(
+        rec, rays_, {.camera = frame.camera, .specular_depth = settings.specular_depth, .emission = direct_light_});
+    direct_->record(rec, rays_,
+                    {.points = surface.points,
+                     .radiance = direct_light_,
+                     .noisy = direct_light_,
+                     .point_count = width_ * height_,
+                     .light_sample_count = settings.direct_samples,
+                     .candidate_count = settings.direct_candidates,
+                     .first_sample = frame.accumulated,
+                     .seed = frame.camera.seed});
+    resolve_.accumulate(rec, direct_light_, width_ * height_, 1);
+}
+
+void Renderer::recordGi(Recorder& rec, const FrameInfo& frame, const Settings& settings)
 {
     shows_error_ = error_ && settings.view == gpu::kViewError;
     Settings drawn = settings;
     if (settings.view == gpu::kViewError)
         drawn.view = gpu::kViewNone;
-    resolve_.accumulate(rec, gi_->record(rec, rays_, view, drawn, moved), width_ * height_, 1);
+    resolve_.accumulate(rec, gi_->record(rec, rays_, frame, drawn), width_ * height_, 1);
     if (shows_error_)
         error_->record(rec, resolve_.sum(), resolve_.sampleCount(), width_, height_);
 }

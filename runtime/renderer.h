@@ -65,18 +65,22 @@ public:
     void countRays(RayTally* tally) { rays_.countInto(tally); }
 
 private:
-    void recordGi(Recorder& rec, const gpu::CameraParams& view, const Settings& settings, bool moved);
+    FrameInfo beginFrame(Recorder& rec, const Camera& camera, const Settings& settings, uint32_t seed);
+    void recordDirect(Recorder& rec, const FrameInfo& frame, const Settings& settings);
+    void recordGi(Recorder& rec, const FrameInfo& frame, const Settings& settings);
 
     const SceneGpu& scene_;
     uint32_t width_, height_, max_batch_;
     RayStage rays_;
     std::optional<PrimaryStage> primary_;
     std::optional<DirectStage> direct_;
+    Buffer direct_light_; // vec3[pixels], of Mode::kDirect
     std::optional<ReferenceStage> reference_;
     std::optional<GlobalIllumination> gi_;
     ResolveStage resolve_;
     std::optional<ErrorView> error_;
     bool shows_error_ = false; // in the last frame
-    std::optional<gpu::CameraParams> last_camera_;
+    std::optional<gpu::CameraParams> last_camera_; // none: the next picture starts anew
     uint64_t last_lights_ = 0;
+    uint32_t frame_count_ = 0;
 };

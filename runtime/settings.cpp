@@ -41,7 +41,6 @@ constexpr std::array kKnobs{
     Knob{"caustics.radius", &Settings::caustic_radius, 1e-4, 1, "of the distance from the viewer", "how far that estimate may reach"},
     Knob{"denoise.passes", &Settings::denoise_passes, 0, 5, "", "passes of the filter over the first frames' noise, each three times as wide as the last"},
     choice("reuse.photons", &Settings::reuse_photons, kOffOn, "whether photons and cut are kept while only the camera moves"),
-    choice("reuse.samples", &Settings::reuse_samples, kOffOn, "whether irradiance samples are kept while only the camera moves"),
     Knob{"reference_depth", &Settings::reference_depth, 1, 1024, "", "most vertices of a path of the reference"},
     choice("term", &Settings::term, kTerms, "light paths shown in modes gi and reference; the others sum to all"),
     choice("view", &Settings::view, kViews, "what mode gi shows in place of the picture"),

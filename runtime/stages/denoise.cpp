@@ -2,7 +2,7 @@
 
 DenoiseStage::DenoiseStage(const Device& device, const SceneGpu& scene, uint32_t max_pixels)
     : prepare_(device.kernel("denoise/prepare", scene.constants())), filter_(device.kernel("denoise/filter")),
-      apply_(device.kernel("denoise/apply")), light_(device.array<gpu::vec3>("denoise.light", max_pixels)),
+      apply_(device.kernel("denoise/apply")),
       guides_(device.texelArray<gpu::DenoiseGuide>("denoise.guides", max_pixels)),
       signals_(device.texelArray<gpu::DenoiseSignal>("denoise.signals", max_pixels)),
       filtered_{device.texelArray<gpu::DenoiseSignal>("denoise.filtered_a", max_pixels),
@@ -17,14 +17,12 @@ void DenoiseStage::record(Recorder& rec, const Input& in) const
                               .width = in.width,
                               .step_ = 1,
                               .pixel_angle = in.pixel_angle,
-                              .glossy = in.glossy,
-                              .shared_ = in.shared};
+                              .glossy = in.glossy};
     rec.run(prepare_, params.point_count, params,
             {{"Points", in.points},
-             {"NoisyLight", light_},
+             {"Radiance", in.light},
              {"Guides", guides_},
-             {"Signals", signals_},
-             {"Shares", in.shares}});
+             {"Signals", signals_}});
     const Buffer* signals = &signals_;
     for (uint32_t pass = 0; pass < in.passes; ++pass, params.step_ *= 3)
     {
@@ -34,5 +32,5 @@ void DenoiseStage::record(Recorder& rec, const Input& in) const
         signals = &filtered;
     }
     rec.run(apply_, params.point_count, params,
-            {{"Signals", signals_}, {"Filtered", *signals}, {"Radiance", in.radiance}});
+            {{"Signals", signals_}, {"Filtered", *signals}, {"Radiance", in.light}});
 }

@@ -1,5 +1,6 @@
 // Camera rays and their specular chains: one shading point a pixel.
 #pragma once
+#include "runtime/frame/surface_buffers.h"
 #include "runtime/stages/rays.h"
 #include "shaders/primary/primary.h"
 
@@ -15,18 +16,13 @@ public:
     {
         gpu::CameraParams camera; // with sample_count 1
         uint32_t specular_depth;  // most specular events in a chain
+        const Buffer& emission;   // vec3[width * height] becomes what the chains themselves find: emitters, sky
     };
-    struct Output
-    {
-        const Buffer& points;   // gpu::ShadingPoint[width * height]
-        const Buffer& diffuse_points; // gpu::DiffusePoint[width * height], with a texel view
-        const Buffer& radiance; // vec3[width * height]: what the chains themselves found: emitters, sky
-    };
-    Output record(Recorder& rec, const RayStage& rays, const Input& in) const;
+    SurfaceBuffers record(Recorder& rec, const RayStage& rays, const Input& in) const;
 
 private:
     bool has_specular_;
     Kernel generate_, chain_;
     RayQueue queue_, next_queue_;
-    Buffer hits_, points_, diffuse_points_, radiance_;
+    Buffer hits_, points_, diffuse_points_;
 };

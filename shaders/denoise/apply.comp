@@ -3,14 +3,14 @@
 #extension GL_EXT_scalar_block_layout : require
 #include "shaders/denoise/signal.glsl"
 
-// Adds to every pixel what it shows of the light around it. One thread per pixel.
+// Every pixel becomes what it shows of the light around it. One thread per pixel.
 
 layout(local_size_x = kRaysGroupSize) in;
 layout(push_constant, scalar) uniform Params { DenoiseParams params; };
 
 layout(set = 1, binding = 0) uniform usamplerBuffer Signals;  // as prepared
 layout(set = 1, binding = 1) uniform usamplerBuffer Filtered;
-layout(set = 1, binding = 2, scalar) buffer Radiance { vec3 radiance[]; };
+layout(set = 1, binding = 2, scalar) writeonly buffer Radiance { vec3 radiance[]; };
 
 void main()
 {
@@ -21,5 +21,5 @@ void main()
     if (own.lobe == 0.0)
         return;
     Signal around = unpackSignal(texelFetch(Filtered, int(pixel)));
-    radiance[pixel] += own.reflectance * around.light / around.reflectance;
+    radiance[pixel] = own.reflectance * around.light / around.reflectance;
 }

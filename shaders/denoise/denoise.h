@@ -28,9 +28,8 @@ struct DenoiseParams
     uint step_;        // pixels between the places that a pass looks at; 1: the first pass
     float pixel_angle; // radians from a pixel to the next
     uint glossy;       // 1: light of specular lobes alone
-    uint shared_;      // 1: part of it has come otherwise, and is no part of the noise
 };
-GPU_SIZE(DenoiseParams, 24);
+GPU_SIZE(DenoiseParams, 20);
 
 GPU_NAMESPACE_END
 #endif

@@ -11,10 +11,9 @@ layout(local_size_x = kRaysGroupSize) in;
 layout(push_constant, scalar) uniform Params { DenoiseParams params; };
 
 layout(set = 1, binding = 0, scalar) readonly buffer Points { ShadingPoint points[]; };
-layout(set = 1, binding = 1, scalar) readonly buffer NoisyLight { vec3 noisy_light[]; };
+layout(set = 1, binding = 1, scalar) readonly buffer Radiance { vec3 radiance[]; };
 layout(set = 1, binding = 2, scalar) writeonly buffer Guides { DenoiseGuide guides[]; };
 layout(set = 1, binding = 3, scalar) writeonly buffer Signals { DenoiseSignal signals[]; };
-layout(set = 1, binding = 4, scalar) readonly buffer Shares { float shares[]; }; // that have come otherwise
 
 const float kLeastReflectance = 1e-4; // no light is lost where a lobe's fit says none, and no half is too small
 
@@ -26,8 +25,7 @@ void main()
     ShadingPoint point = points[pixel];
     Signal signal = Signal(vec3(0.0), vec3(0.0), 0.0, 0.0);
     vec3 smooth_normal = vec3(0.0, 0.0, 1.0), normal = smooth_normal;
-    float part = params.shared_ != 0u ? 1.0 - shares[pixel] : 1.0;
-    if (point.slot != kNone && part > 0.0)
+    if (point.slot != kNone)
     {
         PathVertex v = vertexAt(point);
         Surface s = v.surface;
@@ -37,7 +35,7 @@ void main()
         vec3 reflectance = params.glossy != 0u ? specular : specular + diffuseReflectance(b, cosine);
         float share = luminance(specular) / max(luminance(reflectance), 1e-20);
         if (params.glossy == 0u || hasGlossyLobe(b)) // else it sends no ray
-            signal = Signal(noisy_light[pixel], max(part * point.throughput * reflectance, vec3(kLeastReflectance)),
+            signal = Signal(radiance[pixel], max(point.throughput * reflectance, vec3(kLeastReflectance)),
                             max(mix(1.0, sharpestAlpha(b), share), 1.0 / 255.0), 0.0);
         smooth_normal = s.smooth_normal;
         normal = s.normal;

@@ -35,27 +35,20 @@ protected:
              .orthographic_height = kHeight});
     }
 
-    /// @param shares parts of the light that came otherwise, by pixel; none where it is empty
-    std::vector<gpu::vec3> filtered(const std::vector<gpu::vec3>& light, uint32_t passes,
-                                    const std::vector<float>& shares = {})
+    std::vector<gpu::vec3> filtered(const std::vector<gpu::vec3>& light, uint32_t passes)
     {
-        const Buffer noisy = upload("test.noisy", light),
-                     radiance = upload("test.radiance", std::vector<gpu::vec3>(kPixels));
-        const Buffer parts = upload("test.shares", shares);
+        const Buffer radiance = upload("test.radiance", light);
         const DenoiseStage stage(device(), *scene_, kPixels);
         submit(*scene_,
                [&](Recorder& rec)
                {
-                   rec.copy(noisy, stage.light(), kPixels * sizeof(gpu::vec3));
                    stage.record(rec, {.points = points_->gpu->points,
-                                      .radiance = radiance,
+                                      .light = radiance,
                                       .width = kWidth,
                                       .height = kHeight,
                                       .passes = passes,
                                       .pixel_angle = float(pixel_angle_),
-                                      .glossy = false,
-                                      .shares = parts,
-                                      .shared = !shares.empty()});
+                                      .glossy = false});
                });
         return contents<gpu::vec3>(radiance, kPixels);
     }
@@ -76,9 +69,9 @@ class DenoiseOfObjects : public Denoise
 {
 protected:
     /// Three passes give back the light they got, but for rounding: that of four signals.
-    void expectUnchanged(const std::vector<gpu::vec3>& light, const std::vector<float>& shares = {})
+    void expectUnchanged(const std::vector<gpu::vec3>& light)
     {
-        const auto got = filtered(light, 3, shares);
+        const auto got = filtered(light, 3);
         for (uint32_t i = 0; i < kPixels; ++i)
         {
             const Double3 want = light[i], ours = got[i];
@@ -222,21 +215,6 @@ TEST_F(DenoiseOfObjects, LeavesEvenLightEvenWhateverItsColor)
         light[i] = {float(r.x * even.x), float(r.y * even.y), float(r.z * even.z)};
     }
     expectUnchanged(light);
-}
-
-/// Where something else gives part of the light, noise is what is left of it.
-TEST_F(DenoiseOfObjects, LeavesPartOfEvenLightThatPart)
-{
-    Random random(11);
-    std::vector<gpu::vec3> light(kPixels);
-    std::vector<float> shares(kPixels);
-    for (uint32_t i = 0; i < kPixels; ++i)
-    {
-        shares[i] = i % 3 == 0 ? 1 : random.between(0, 0.9f);
-        const Double3 r = (1 - double(shares[i])) * reflectanceAt(i);
-        light[i] = {float(r.x), float(r.y), float(r.z)};
-    }
-    expectUnchanged(light, shares);
 }
 
 TEST_F(DenoiseOfObjects, KeepsLightOnItsSurface)

@@ -60,6 +60,8 @@ with tempfile.TemporaryDirectory() as name:
             check("lumicut-pkg-info-1", run("lumicut-pkg", "info", package, "--format", "json"))
         check("lumicut-pkg-diff-1", run("lumicut-pkg", "diff", "cornell.lumi", "decal.lumi", "--format", "json",
                                         codes=(1,)))
+        document = (schemas.parent / "path.md").read_text()
+        check("lumicut-path-1", document.split("```json\n")[1].split("```")[0])
         run("lumicut-pkg", "bundle", "cornell.lumi", "-o", "demo.tar.zst", "--player", programs / "lumicut-pkg")
         subprocess.run(["tar", "--zstd", "-xf", "demo.tar.zst"], cwd=folder, check=True)
         check("lumicut-pkg-bundle-manifest-1", (folder / "demo/manifest.json").read_text())
