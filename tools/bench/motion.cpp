@@ -157,7 +157,11 @@ Status measureSequence(const OpenedPackage& opened, const MotionBenchOptions& op
 
 uint32_t frameSeed(uint32_t seed, int32_t frame)
 {
-    return seed * 0x9e3779b9u + uint32_t(frame); // kernels hash what they get
+    // A bijection, so that no two frames are the same, whose numbers are far apart: stages add small ones of their own.
+    uint32_t x = seed * 0x9e3779b9u + uint32_t(frame);
+    x = (x ^ (x >> 16)) * 0x85ebca6bu; // the finalizer of MurmurHash3
+    x = (x ^ (x >> 13)) * 0xc2b2ae35u;
+    return x ^ (x >> 16);
 }
 
 Mode modeOf(const MotionBenchOptions& options)

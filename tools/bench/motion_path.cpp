@@ -1,5 +1,6 @@
 #include "tools/bench/motion_path.h"
 
+#include "runtime/camera_path.h"
 #include "tools/bench/paths.h"
 
 #include <algorithm>
@@ -50,5 +51,9 @@ Result<CameraOfFrame> chooseMotion(const std::string& path, double frames_per_se
     if (path == "sway")
         return CameraOfFrame([&opened, frames_per_second](int32_t frame)
                              { return movedCamera(opened.camera, opened.scene->info(), float(frame * kSwayPerSecond / frames_per_second)); });
-    return Error{ExitCode::kUsage, "sway and orbit are known"};
+    const auto read = CameraPath::load(path, packageCameras(opened.package));
+    if (!read)
+        return read.error().about(path);
+    return CameraOfFrame([read = *read, frames_per_second](int32_t frame)
+                         { return read.at(read.start() + std::abs(frame) / frames_per_second); });
 }
