@@ -160,6 +160,14 @@ void SceneGpu::setLight(Recorder& rec, uint32_t index, const gpu::Light& light)
     rec.write(buffers_[gpu::kLightsBinding - gpu::kBvhNodesBinding], index * sizeof(light), std::as_bytes(std::span(&light, 1)));
 }
 
+void SceneGpu::setEmission(Recorder& rec, uint32_t index, gpu::vec3 emission)
+{
+    const Buffer& materials = buffers_[gpu::kMaterialsBinding - gpu::kBvhNodesBinding];
+    check((index + 1) * sizeof(gpu::Material) <= materials.size(), "material {} of {} bytes of them", index, materials.size());
+    ++lights_version_;
+    rec.write(materials, index * sizeof(gpu::Material) + offsetof(gpu::Material, emission), std::as_bytes(std::span(&emission, 1)));
+}
+
 void SceneGpu::createImages(const package::Package& package)
 {
     constexpr std::array<uint32_t, 4> kWhite{~0u, ~0u, ~0u, ~0u};

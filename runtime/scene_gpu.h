@@ -39,9 +39,12 @@ public:
     bool hasSmoothLayers() const { return has_smooth_layers_; }
     /// Replaces light `index` from the next kernel of `rec` on; with the kind and pmf it has, on which other tables rest.
     void setLight(Recorder& rec, uint32_t index, const gpu::Light& light);
+    /// Replaces what material `index` emits, W/(m^2 sr) before its texture, from the next kernel of `rec` on. Of a surface
+    /// whose triangles are lights those are to be replaced too.
+    void setEmission(Recorder& rec, uint32_t index, gpu::vec3 emission);
     /// gpu::ViewScale, as every kernel sees it: of the whole scene until a ViewScaleStage sets it.
     const Buffer& viewScale() const { return buffers_.back(); }
-    /// Grows whenever a light is replaced: what was made under another version is out of date.
+    /// Grows whenever a light or an emission is replaced: what was made under another version is out of date.
     uint64_t lightsVersion() const { return lights_version_; }
     /// By light index.
     std::span<const LightShare> lightShares() const { return light_shares_; }
