@@ -117,7 +117,7 @@ const Buffer& GlobalIllumination::record(Recorder& rec, const RayStage& rays, co
     const FramePlan plan = planFrame(settings, traits(), frame);
     gpu::CameraParams placement = frame.camera;
     placement.seed = placement_seed_.value_or(frame.camera.seed);
-    light_.clear(rec);
+    light_.clear(rec, plan.lightTerms());
     const SurfaceBuffers surface =
         primary_.record(rec, rays, {.camera = placement, .specular_depth = settings.specular_depth, .emission = light_.emission});
     view_scale_.record(rec, surface.points, width_ * height_, frame.camera);
@@ -159,7 +159,7 @@ const Buffer& GlobalIllumination::record(Recorder& rec, const RayStage& rays, co
 /// What is noisy becomes the mean of the frames before, as far as they saw it, and of its surroundings.
 void GlobalIllumination::recordSignals(const Context& c)
 {
-    const SignalBuffers signals = signals_->record(c.rec, c.frame, c.surface, light_);
+    const SignalBuffers signals = signals_->record(c.rec, c.frame, c.surface, light_, c.plan.lightTerms());
     if (c.plan.remembers)
         history_->record(c.rec, {.signals = signals,
                                  .surface = c.surface,
@@ -180,7 +180,7 @@ void GlobalIllumination::recordSignals(const Context& c)
         if (c.plan.remembers || c.plan.denoise_passes > 0)
             signals_->apply(c.rec, signal, filtered, light, width_ * height_);
     };
-    if (c.plan.direct && direct_.isNoisy())
+    if (c.plan.noisy_direct)
         filter(signals.direct, light_.direct);
     if (c.plan.glossy)
         filter(signals.glossy, light_.glossy);
@@ -287,7 +287,7 @@ CutStage::Output GlobalIllumination::recordCut(const Context& c, const PhotonTre
                              .fewest = std::max(uint32_t(gpu::kCutFewest * shrink * shrink), 1u),
                              .probes = settings.cut_probes,
                              .rim_probes = kRimProbes,
-                             .seed = c.seed};
+                             .seed = traceSeed(c.frame.map_seed, c.frame.accumulated, gpu::kTermIndirect)};
     if (made_cut_ == in)
         return cut_.output();
     made_cut_ = in;

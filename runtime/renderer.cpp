@@ -77,7 +77,9 @@ FrameInfo Renderer::beginFrame(Recorder& rec, const Camera& camera, const Settin
     }
     last_camera_ = frame.camera;
     frame.camera.seed = picture_seed_;
-    if (frame.previous)
+    if (!settings.reuse_photons)
+        frame.map_seed = picture_seed_;
+    if (frame.previous && antialias_)
         frame.camera.jitter = jitterOf(frame.number);
     last_lights_ = scene_.lightsVersion();
     const bool repeat = gi_ && showsOneFrame(settings.view); // a debug view stands still

@@ -1,6 +1,7 @@
 // What a frame of mode gi does, decided before any of it is recorded.
 #pragma once
 #include "runtime/frame/frame_info.h"
+#include "runtime/frame/light_buffers.h"
 #include "runtime/settings.h"
 
 /// What a scene, and the room that was made for it, let a frame do.
@@ -19,6 +20,7 @@ struct FrameTraits
 struct FramePlan
 {
     bool emission, direct, indirect, glossy, caustics; // terms that the frame shows
+    bool noisy_direct;       // direct light that one ray does not tell the whole of
     bool makes_map;          // photons, their tree and the cut are wanted
     bool gathers_at_samples; // final gathering at irradiance samples, between which pixels interpolate
     bool gathers_at_pixels;  // final gathering at every pixel instead
@@ -29,6 +31,12 @@ struct FramePlan
     bool antialiases;        // the picture is blended with the last one
     float sure_reflectance;  // what reflects this much sends a glossy ray from every pixel
 
+    /// gpu::kLight* bits of the terms that the frame makes.
+    uint32_t lightTerms() const
+    {
+        return (emission ? gpu::kLightEmission : 0u) | (direct ? gpu::kLightSharpDirect : 0u) | (direct && noisy_direct ? gpu::kLightDirect : 0u) |
+               (indirect ? gpu::kLightIndirect : 0u) | (glossy ? gpu::kLightGlossy : 0u) | (caustics ? gpu::kLightCaustics : 0u);
+    }
     bool operator==(const FramePlan&) const = default;
 };
 

@@ -11,7 +11,7 @@ const Buffer& ComposeStage::record(Recorder& rec, const LightBuffers& light, con
                                    uint32_t point_count) const
 {
     const auto scope = rec.scope("compose");
-    rec.run(sum_, pixel_count, gpu::ComposeParams{.pixel_count = pixel_count, .point_count = point_count, .emission = plan.emission},
+    rec.run(sum_, pixel_count, gpu::ComposeParams{.pixel_count = pixel_count, .point_count = point_count, .terms = plan.lightTerms()},
             {{"Emission", light.emission},
              {"SharpDirect", light.sharp_direct},
              {"Direct", light.direct},

@@ -14,9 +14,13 @@ PrimaryStage::PrimaryStage(const Device& device, const SceneGpu& scene, uint32_t
 {
 }
 
+/// Of a pixel: what each frame of a moving picture shows of it. The frames are blended, which blurs once more.
+constexpr float kMovingShare = 0.5f;
+
 float PrimaryStage::textureWidth(const gpu::CameraParams& camera)
 {
-    return kTextureBlur * pixelSide(camera) / float(camera.first_sample + 1);
+    const float share = camera.jitter.x < 0 ? 1 / float(camera.first_sample + 1) : kMovingShare;
+    return kTextureBlur * pixelSide(camera) * share;
 }
 
 SurfaceBuffers PrimaryStage::record(Recorder& rec, const RayStage& rays, const Input& in) const

@@ -13,7 +13,8 @@ SignalsStage::SignalsStage(const Device& device, const SceneGpu& scene, uint32_t
 {
 }
 
-SignalBuffers SignalsStage::record(Recorder& rec, const FrameInfo& frame, const SurfaceBuffers& surface, const LightBuffers& light)
+SignalBuffers SignalsStage::record(Recorder& rec, const FrameInfo& frame, const SurfaceBuffers& surface, const LightBuffers& light,
+                                   uint32_t terms)
 {
     const auto scope = rec.scope("signals");
     now_ = 1 - now_;
@@ -21,7 +22,8 @@ SignalBuffers SignalsStage::record(Recorder& rec, const FrameInfo& frame, const 
     rec.write(views_, 0, std::as_bytes(std::span(&views, 1)));
     const gpu::SignalParams params{.point_count = frame.camera.width * frame.camera.height,
                                    .spread = frame.camera.orthographic ? 0 : PrimaryStage::textureWidth(frame.camera),
-                                   .has_previous = frame.previous.has_value()};
+                                   .has_previous = frame.previous.has_value(),
+                                   .terms = terms};
     rec.run(prepare_, params.point_count, params,
             {{"Views", views_},
              {"Points", surface.points},

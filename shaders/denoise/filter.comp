@@ -18,6 +18,7 @@ layout(set = 1, binding = 1) uniform usamplerBuffer Signals;
 layout(set = 1, binding = 2, scalar) writeonly buffer Filtered { LightSignal filtered[]; };
 
 const float kBend = 0.25;  // of a lobe's width: how far the direction it reflects from may turn, radians
+const float kUnseen = 0.01;     // of the brightness: noise of which nothing is seen; what has a history that long is left as it is
 const float kBeyondNoise = 2.0; // standard errors
 const float kWider = 0.5;   // of a lobe's width: what makes another lobe of it
 const float kOffPlane = 0.15; // sine of the angle to the surface at which another place is no more part of it
@@ -52,7 +53,7 @@ void main()
     if (pixel >= params.point_count)
         return;
     Signal center = unpackSignal(texelFetch(Signals, int(pixel)));
-    if (center.lobe == 0.0)
+    if (center.lobe == 0.0 || (center.error >= 0.0 && center.error <= kUnseen * brightness(center)))
     {
         filtered[pixel] = packSignal(center);
         return;

@@ -63,8 +63,9 @@ void main()
         vec3 specular = hasGlossyLobe(v.bsdf) ? specularReflectance(v.bsdf, cosine) : vec3(0.0);
         vec3 both = specular + diffuseReflectance(v.bsdf, cosine);
         float share = luminance(specular) / max(luminance(both), 1e-20);
-        direct_signals[pixel] = signalOf(direct[pixel], point.throughput * both, mix(1.0, sharpestAlpha(v.bsdf), share));
-        if (hasGlossyLobe(v.bsdf)) // else it sends no ray
+        if ((params.terms & kLightDirect) != 0u)
+            direct_signals[pixel] = signalOf(direct[pixel], point.throughput * both, mix(1.0, sharpestAlpha(v.bsdf), share));
+        if ((params.terms & kLightGlossy) != 0u && hasGlossyLobe(v.bsdf)) // else it sends no ray
             glossy_signals[pixel] = signalOf(glossy[pixel], point.throughput * specular, sharpestAlpha(v.bsdf));
         smooth_normal = v.surface.smooth_normal;
         normal = v.surface.normal;

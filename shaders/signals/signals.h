@@ -2,6 +2,7 @@
 // and shaders/{signals,history,denoise}/*.
 #ifndef SHADERS_SIGNALS_H
 #define SHADERS_SIGNALS_H
+#include "shaders/compose/compose.h"
 #include "shaders/primary/primary.h"
 
 GPU_NAMESPACE_BEGIN
@@ -42,8 +43,9 @@ struct SignalParams
     uint point_count;
     float spread;      // by which a ray is wider a metre on: ShadingPoint.width over the way from the eye; 0: parallel rays
     uint has_previous; // 1: FrameViews.last is that of the last frame
+    uint terms;        // kLight* bits: of the light that is there
 };
-GPU_SIZE(SignalParams, 12);
+GPU_SIZE(SignalParams, 16);
 
 GPU_NAMESPACE_END
 #endif

@@ -46,9 +46,9 @@ protected:
         submit(*scene_,
                [&](Recorder& rec)
                {
-                   buffers.clear(rec);
+                   buffers.clear(rec, gpu::kLightDirect | gpu::kLightGlossy);
                    rec.copy(input, buffers.direct, kPixels * sizeof(gpu::vec3));
-                   const SignalBuffers made = signals.record(rec, frame, *points_->gpu, buffers);
+                   const SignalBuffers made = signals.record(rec, frame, *points_->gpu, buffers, gpu::kLightDirect);
                    const Buffer& filtered = stage.record(rec, {.signal = made.direct,
                                                                .guides = made.guides,
                                                                .width = kWidth,

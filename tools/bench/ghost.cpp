@@ -44,7 +44,7 @@ Light measure(const OpenedPackage& opened, const MotionBenchOptions& options, co
         rec.begin(opened.scene->descriptorSet());
         if (frame == 1)
             setLights(rec, opened, 0);
-        renderer.record(rec, camera(frame), settings, frameSeed(options.seed, frame));
+        renderer.record(rec, camera(frame), settings, frameSeed(options, frame));
         rec.submitAndWait();
         if (frame >= 0)
             light[size_t(frame)] = sumOf(pictureOf(renderer, *opened.device));

@@ -123,12 +123,14 @@ Status measureSequence(const OpenedPackage& opened, const MotionBenchOptions& op
         rec.begin(opened.scene->descriptorSet());
         {
             const auto scope = rec.scope("frame");
-            renderer.record(rec, camera(number), options.settings, frameSeed(options.seed, number));
+            renderer.record(rec, camera(number), options.settings, frameSeed(options, number));
         }
         const std::vector<StageTime> times = rec.submitAndWait();
         if (number < 0)
             continue;
         result.stages.add(times);
+        if (const std::optional<double> share = renderer.rememberedShare(*opened.device))
+            result.reprojected = result.reprojected.value_or(0) + *share / options.frames;
         const auto reference = references.picture(camera(number), term, options.sample_count);
         if (!reference)
             return reference.error();
@@ -155,10 +157,12 @@ Status measureSequence(const OpenedPackage& opened, const MotionBenchOptions& op
 }
 } // namespace
 
-uint32_t frameSeed(uint32_t seed, int32_t frame)
+uint32_t frameSeed(const MotionBenchOptions& options, int32_t frame)
 {
+    if (modeOf(options) == Mode::kGi && goesOn(options.settings))
+        return options.seed; // the renderer takes other numbers in every frame
     // A bijection, so that no two frames are the same, whose numbers are far apart: stages add small ones of their own.
-    uint32_t x = seed * 0x9e3779b9u + uint32_t(frame);
+    uint32_t x = options.seed * 0x9e3779b9u + uint32_t(frame);
     x = (x ^ (x >> 16)) * 0x85ebca6bu; // the finalizer of MurmurHash3
     x = (x ^ (x >> 13)) * 0xc2b2ae35u;
     return x ^ (x >> 16);

@@ -22,7 +22,7 @@ struct MotionBenchOptions : BenchOptions
 /// Prints moving FLIP, flicker, ghosts and the stages' times, as text or schema "lumicut-bench-motion/1".
 Status benchMotion(const MotionBenchOptions& options);
 
-/// The seed of a frame: no two of a sequence have the same. Frames before the first are negative.
-uint32_t frameSeed(uint32_t seed, int32_t frame);
+/// The seed of a frame. Frames before the first are negative.
+uint32_t frameSeed(const MotionBenchOptions& options, int32_t frame);
 
 Mode modeOf(const MotionBenchOptions& options);
