@@ -10,8 +10,9 @@ using Json = nlohmann::ordered_json;
 /// FLIP in pixels that the frame before did not show, in units of the mean; nothing where there is no such pixel.
 std::optional<double> unseenFlipRatio(const SequenceMetrics& metrics)
 {
-    return metrics.unseenFlip().count > 0 && metrics.meanFlip() > 0 ? std::optional(metrics.unseenFlip().value() / metrics.meanFlip())
-                                                                    : std::nullopt;
+    return metrics.unseenFlip().count > 0 && metrics.meanFlip() > 0
+               ? std::optional(metrics.unseenFlip().value() / metrics.meanFlip())
+               : std::nullopt;
 }
 
 template <typename Value>
@@ -48,7 +49,7 @@ void printJson(const MotionBenchOptions& options, const OpenedPackage& opened, c
               {"seed", options.seed},
               {"moving_flip", m.meanFlip()},
               {"flicker", byDistance([&](size_t k) { return m.flicker(k).value(); })},
-              {"ghost", result.ghost.all},
+              {"ghost", {orNull(result.ghost.all[0]), orNull(result.ghost.all[1])}},
               {"reprojected", orNull(result.reprojected)}};
     json["stages_ms"] = Json::object();
     for (const StageSamples::Stage& stage : result.stages.stages())
@@ -60,31 +61,34 @@ void printJson(const MotionBenchOptions& options, const OpenedPackage& opened, c
     json["plain_pixels"] = result.plain.value();
     json["disoccluded_flip_ratio"] = orNull(unseenFlipRatio(m));
     json["disoccluded_pixels"] = m.unseenShare();
-    json["ghost_indirect"] = result.ghost.indirect;
+    json["ghost_indirect"] = {orNull(result.ghost.indirect[0]), orNull(result.ghost.indirect[1])};
     fmt::print("{}\n", json.dump(2));
 }
 
 void print(const MotionBenchOptions& options, const OpenedPackage& opened, const MotionResult& result)
 {
     const SequenceMetrics& m = result.metrics;
-    fmt::print("{}, {} triangles, {}x{}, mode {}, preset {}, path {}: {} frames at {} a second after {} of warm-up, against {} samples a pixel\n",
-               opened.device->name(), opened.package.triangles().size(), options.width, options.height, options.mode, options.preset,
-               options.path, options.frames, options.frames_per_second, options.warm_up, options.sample_count);
-    fmt::print("  {:<34} {:8.4f}  (worst frame {:.4f})\n", "moving FLIP", m.meanFlip(), *std::ranges::max_element(m.flip()));
+    fmt::print("{}, {} triangles, {}x{}, mode {}, preset {}, path {}: {} frames at {} a second after {} of warm-up, "
+               "against {} samples a pixel\n",
+               opened.device->name(), opened.package.triangles().size(), options.width, options.height, options.mode,
+               options.preset, options.path, options.frames, options.frames_per_second, options.warm_up,
+               options.sample_count);
+    fmt::print("  {:<34} {:8.4f}  (worst frame {:.4f})\n", "moving FLIP", m.meanFlip(),
+               *std::ranges::max_element(m.flip()));
     const auto row = [](std::string_view name, const std::array<double, SequenceMetrics::kDistances>& values)
     { fmt::print("  {:<34} {:8.4f} {:8.4f} {:8.4f}\n", name, values[0], values[1], values[2]); };
     row("flicker F1 F2 F3 over references'", byDistance([&](size_t k) { return m.flicker(k).value(); }));
     row("  without mirrors and caustics", byDistance([&](size_t k) { return m.plainFlicker(k).value(); }));
     row("  of the frames", byDistance([&](size_t k) { return m.flicker(k).pictures.value(); }));
     row("  of the references", byDistance([&](size_t k) { return m.flicker(k).references.value(); }));
-    const auto unseen = unseenFlipRatio(m);
+    const auto text = [](const std::optional<double>& value) { return value ? fmt::format("{:.4f}", *value) : "-"; };
     fmt::print("  {:<34} {:>8}  of the mean, in {:.2f} % of the pixels\n", "FLIP where newly seen",
-               unseen ? fmt::format("{:.3f}", *unseen) : "-", 100 * m.unseenShare());
-    const auto ghost = [](std::string_view name, const std::array<double, 2>& shares)
-    { fmt::print("  {:<34} {:8.4f} {:8.4f}\n", name, shares[0], shares[1]); };
+               text(unseenFlipRatio(m)), 100 * m.unseenShare());
+    const auto ghost = [&](std::string_view name, const Ghost::Shares& shares)
+    { fmt::print("  {:<34} {:>8} {:>8}\n", name, text(shares[0]), text(shares[1])); };
     ghost("light left 1 and 4 frames after off", result.ghost.all);
     ghost("  of indirect light", result.ghost.indirect);
-    fmt::print("  {:<34} {:>8}\n", "pixels reprojected", result.reprojected ? fmt::format("{:.3f}", *result.reprojected) : "-");
+    fmt::print("  {:<34} {:>8}\n", "pixels reprojected", text(result.reprojected));
     fmt::print("  {:<34} {:>8}\n", "GPU ms", "p50");
     for (const StageSamples::Stage& stage : result.stages.stages())
         fmt::print("    {:<32} {:8.3f}\n", stage.name, percentile(stage.ms, 0.5));
