@@ -194,7 +194,8 @@ Status benchMotion(const MotionBenchOptions& options)
     MotionResult result;
     if (const Status status = measureSequence(*opened, options, *camera, geometry, result); !status)
         return status;
-    result.ghost = measureGhost(*opened, options, *camera);
+    if (options.ghost)
+        result.ghost = measureGhost(*opened, options, *camera);
     (options.json ? printJson : print)(options, *opened, result);
     return Success{};
 }

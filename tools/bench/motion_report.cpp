@@ -15,18 +15,57 @@ std::optional<double> unseenFlipRatio(const SequenceMetrics& metrics)
                : std::nullopt;
 }
 
-template <typename Value>
-std::array<double, SequenceMetrics::kDistances> byDistance(const Value& value)
+/// For each distance a part of its flicker; nothing where the sequence is too short or no surface was seen twice.
+using Distances = std::array<std::optional<double>, SequenceMetrics::kDistances>;
+
+template <typename Part>
+Distances flickers(const SequenceMetrics& metrics, const Part& part, bool plain = false)
 {
-    std::array<double, SequenceMetrics::kDistances> values{};
+    Distances values;
     for (size_t i = 0; i < values.size(); ++i)
-        values[i] = value(i + 1);
+        if (const Flicker& f = plain ? metrics.plainFlicker(i + 1) : metrics.flicker(i + 1); f.pictures.count > 0)
+            values[i] = part(f);
     return values;
+}
+
+double over(const Flicker& f)
+{
+    return f.value();
+}
+double ofPictures(const Flicker& f)
+{
+    return f.pictures.value();
+}
+double ofReferences(const Flicker& f)
+{
+    return f.references.value();
 }
 
 Json orNull(const std::optional<double>& value)
 {
     return value ? Json(*value) : Json(nullptr);
+}
+template <size_t kCount>
+Json orNull(const std::array<std::optional<double>, kCount>& values)
+{
+    Json json = Json::array();
+    for (const auto& value : values)
+        json.push_back(orNull(value));
+    return json;
+}
+
+std::string text(const std::optional<double>& value)
+{
+    return value ? fmt::format("{:.4f}", *value) : "-";
+}
+
+template <size_t kCount>
+void printRow(std::string_view name, const std::array<std::optional<double>, kCount>& values)
+{
+    fmt::print("  {:<34}", name);
+    for (const auto& value : values)
+        fmt::print(" {:>8}", text(value));
+    fmt::print("\n");
 }
 } // namespace
 
@@ -48,20 +87,20 @@ void printJson(const MotionBenchOptions& options, const OpenedPackage& opened, c
               {"spp", options.sample_count},
               {"seed", options.seed},
               {"moving_flip", m.meanFlip()},
-              {"flicker", byDistance([&](size_t k) { return m.flicker(k).value(); })},
-              {"ghost", {orNull(result.ghost.all[0]), orNull(result.ghost.all[1])}},
+              {"flicker", orNull(flickers(m, over))},
+              {"ghost", orNull(result.ghost.all)},
               {"reprojected", orNull(result.reprojected)}};
     json["stages_ms"] = Json::object();
     for (const StageSamples::Stage& stage : result.stages.stages())
         json["stages_ms"][stage.name] = percentile(stage.ms, 0.5);
     json["flip_of_frames"] = m.flip();
-    json["flicker_plain"] = byDistance([&](size_t k) { return m.plainFlicker(k).value(); });
-    json["flicker_of_frames"] = byDistance([&](size_t k) { return m.flicker(k).pictures.value(); });
-    json["flicker_of_references"] = byDistance([&](size_t k) { return m.flicker(k).references.value(); });
+    json["flicker_plain"] = orNull(flickers(m, over, true));
+    json["flicker_of_frames"] = orNull(flickers(m, ofPictures));
+    json["flicker_of_references"] = orNull(flickers(m, ofReferences));
     json["plain_pixels"] = result.plain.value();
     json["disoccluded_flip_ratio"] = orNull(unseenFlipRatio(m));
     json["disoccluded_pixels"] = m.unseenShare();
-    json["ghost_indirect"] = {orNull(result.ghost.indirect[0]), orNull(result.ghost.indirect[1])};
+    json["ghost_indirect"] = orNull(result.ghost.indirect);
     fmt::print("{}\n", json.dump(2));
 }
 
@@ -75,19 +114,14 @@ void print(const MotionBenchOptions& options, const OpenedPackage& opened, const
                options.sample_count);
     fmt::print("  {:<34} {:8.4f}  (worst frame {:.4f})\n", "moving FLIP", m.meanFlip(),
                *std::ranges::max_element(m.flip()));
-    const auto row = [](std::string_view name, const std::array<double, SequenceMetrics::kDistances>& values)
-    { fmt::print("  {:<34} {:8.4f} {:8.4f} {:8.4f}\n", name, values[0], values[1], values[2]); };
-    row("flicker F1 F2 F3 over references'", byDistance([&](size_t k) { return m.flicker(k).value(); }));
-    row("  without mirrors and caustics", byDistance([&](size_t k) { return m.plainFlicker(k).value(); }));
-    row("  of the frames", byDistance([&](size_t k) { return m.flicker(k).pictures.value(); }));
-    row("  of the references", byDistance([&](size_t k) { return m.flicker(k).references.value(); }));
-    const auto text = [](const std::optional<double>& value) { return value ? fmt::format("{:.4f}", *value) : "-"; };
+    printRow("flicker F1 F2 F3 over references'", flickers(m, over));
+    printRow("  without mirrors and caustics", flickers(m, over, true));
+    printRow("  of the frames", flickers(m, ofPictures));
+    printRow("  of the references", flickers(m, ofReferences));
     fmt::print("  {:<34} {:>8}  of the mean, in {:.2f} % of the pixels\n", "FLIP where newly seen",
                text(unseenFlipRatio(m)), 100 * m.unseenShare());
-    const auto ghost = [&](std::string_view name, const Ghost::Shares& shares)
-    { fmt::print("  {:<34} {:>8} {:>8}\n", name, text(shares[0]), text(shares[1])); };
-    ghost("light left 1 and 4 frames after off", result.ghost.all);
-    ghost("  of indirect light", result.ghost.indirect);
+    printRow("light left 1 and 4 frames after off", result.ghost.all);
+    printRow("  of indirect light", result.ghost.indirect);
     fmt::print("  {:<34} {:>8}\n", "pixels reprojected", text(result.reprojected));
     fmt::print("  {:<34} {:>8}\n", "GPU ms", "p50");
     for (const StageSamples::Stage& stage : result.stages.stages())
