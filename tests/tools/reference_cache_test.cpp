@@ -13,13 +13,15 @@ class ReferenceCacheTest : public testing::Test
 protected:
     ImageF get(const ReferenceKey& key)
     {
-        const auto picture = ReferenceCache(folder_ / "a/b").picture(key, [&] { return randomImage(key.width, key.height, ++rendered_); });
+        const auto picture = ReferenceCache(folder_ / "a/b")
+                                 .picture(key, [&] { return randomImage(key.width, key.height, ++rendered_); });
         EXPECT_TRUE(picture) << picture.error().message;
         return *picture;
     }
 
     TemporaryFolder folder_;
-    ReferenceKey key_{.package = 1, .camera = {}, .width = 7, .height = 5, .sample_count = 16, .depth_limit = 64, .term = 0};
+    ReferenceKey key_{
+        .package = 1, .camera = {}, .width = 7, .height = 5, .sample_count = 16, .depth_limit = 64, .term = 0};
     uint32_t rendered_ = 0;
 };
 } // namespace
@@ -61,7 +63,8 @@ TEST_F(ReferenceCacheTest, DamagedFilesAreMadeAgain)
     std::string flipped = whole, longer = whole + "x";
     flipped[whole.size() / 2] = char(flipped[whole.size() / 2] ^ 1);
     uint32_t expected = 1;
-    for (const std::string& damaged : {whole.substr(0, whole.size() - 1), whole.substr(0, 3), std::string(), flipped, longer})
+    for (const std::string& damaged :
+         {whole.substr(0, whole.size() - 1), whole.substr(0, 3), std::string(), flipped, longer})
     {
         std::ofstream(file, std::ios::binary) << damaged;
         get(key_);

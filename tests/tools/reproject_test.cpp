@@ -8,8 +8,8 @@
 namespace
 {
 constexpr uint32_t kWidth = 64, kHeight = 48;
-constexpr float kWall = 4;         // metres from the first camera to the wall z = -4
-constexpr float kBoxSide = 1;      // a square 1 m before it, parallel to it, around its centre
+constexpr float kWall = 4;    // metres from the first camera to the wall z = -4
+constexpr float kBoxSide = 1; // a square 1 m before it, parallel to it, around its centre
 constexpr float kBoxDistance = 3;
 
 gpu::CameraParams cameraAt(gpu::vec3 position, float turn = 0)
@@ -105,7 +105,8 @@ TEST(ReprojectTest, WarpBringsATextureToWhereItIsNow)
     double inside = 0;
     for (size_t i = 0; i < places.size(); ++i)
     {
-        const bool inner = places[i].isSeen() && places[i].x > 1.5f && places[i].x < kWidth - 1.5f && places[i].y > 1.5f && places[i].y < kHeight - 1.5f;
+        const bool inner = places[i].isSeen() && places[i].x > 1.5f && places[i].x < kWidth - 1.5f &&
+                           places[i].y > 1.5f && places[i].y < kHeight - 1.5f;
         if (!inner)
             continue;
         ++inside;
@@ -158,8 +159,8 @@ TEST(ReprojectTest, AMovingCameraUncoversTheWallBesideABox)
         EXPECT_EQ(places[i].isSeen(), !covered) << i % kWidth << ", " << i / kWidth;
         hidden += covered;
     }
-    // The box hides a square of 4/3 m, which has moved by 0.4 m or six pixels: about 110 pixels are new, half of them far
-    // from an edge.
+    // The box hides a square of 4/3 m, which has moved by 0.4 m or six pixels: about 110 pixels are new, half of them
+    // far from an edge.
     EXPECT_GT(hidden, 50u);
 }
 

@@ -2,7 +2,8 @@
 
 namespace
 {
-/// Roughness from which a reflection is blurred over a tenth of the view and more, so that it hardly moves on its surface.
+/// Roughness from which a reflection is blurred over a tenth of the view and more, so that it hardly moves on its
+/// surface.
 constexpr float kRough = 0.4f;
 
 bool isPlain(const gpu::Material& material)
@@ -44,6 +45,7 @@ std::vector<uint8_t> Geometry::plainPixels(const FirstHits& hits) const
     std::vector<uint8_t> plain;
     plain.reserve(hits.hits.size());
     for (const FirstHit& hit : hits.hits)
-        plain.push_back(hit.isSky() || isPlain(opened_.package.materials()[opened_.package.bvhTriangles()[hit.slot].material]));
+        plain.push_back(hit.isSky() ||
+                        isPlain(opened_.package.materials()[opened_.package.bvhTriangles()[hit.slot].material]));
     return plain;
 }

@@ -10,12 +10,13 @@ public:
     /// @param opened borrowed, @param max_rays of one trace()
     Geometry(const OpenedPackage& opened, uint32_t max_rays);
 
-    /// What each ray meets first; alpha is decided by chance, but always the same for a ray's path. Waits for the device.
+    /// What each ray meets first; alpha is decided by chance, but always the same for a ray's path. Waits for the
+    /// device.
     std::vector<gpu::Hit> trace(std::span<const gpu::Ray> rays) const;
     /// What a picture of that camera shows in its pixels' centres.
     FirstHits firstHits(const Camera& camera, uint32_t width, uint32_t height) const;
-    /// For each hit whether its surface looks the same from everywhere but for highlights: it is no mirror, no glass and
-    /// not half transparent. By the materials' factors: textures are not looked at.
+    /// For each hit whether its surface looks the same from everywhere but for highlights: it is no mirror, no glass
+    /// and not half transparent. By the materials' factors: textures are not looked at.
     std::vector<uint8_t> plainPixels(const FirstHits& hits) const;
 
 private:

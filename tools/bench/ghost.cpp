@@ -32,7 +32,8 @@ double sumOf(const ImageF& picture)
 }
 
 /// Of one term, in the last lit frame and the dark ones after it.
-Light measure(const OpenedPackage& opened, const MotionBenchOptions& options, const CameraOfFrame& camera, uint32_t term)
+Light measure(const OpenedPackage& opened, const MotionBenchOptions& options, const CameraOfFrame& camera,
+              uint32_t term)
 {
     Settings settings = options.settings;
     settings.term = term;
@@ -55,11 +56,12 @@ Light measure(const OpenedPackage& opened, const MotionBenchOptions& options, co
     return light;
 }
 
-std::array<double, 2> sharesOf(const Light& light)
+Ghost::Shares sharesOf(const Light& light)
 {
-    std::array<double, 2> shares{};
+    Ghost::Shares shares;
     for (size_t i = 0; i < shares.size(); ++i)
-        shares[i] = light[0] > 0 ? light[Ghost::kFrames[i]] / light[0] : 0;
+        if (light[0] > 0)
+            shares[i] = light[Ghost::kFrames[i]] / light[0];
     return shares;
 }
 } // namespace

@@ -96,6 +96,7 @@ void addMotion(CLI::App& app, CommandLine& line)
     motion->add_option("--warm-up", options.warm_up, "frames before them, on the same path")->check(CLI::Range(0, 100000))->capture_default_str();
     motion->add_option("--spp", options.sample_count, "samples a pixel of the references")->check(CLI::Range(1, 1 << 20))->capture_default_str();
     motion->add_option("--mode", options.mode, "what is judged")->check(CLI::IsMember({"gi", "direct", "reference"}))->capture_default_str();
+    motion->add_flag("--ghost,!--no-ghost", options.ghost, "what is left after all lights are off, which takes as long again; default yes");
     motion->add_option("--seed", options.seed, "another number, other noise")->capture_default_str();
     motion->add_option("--cache", options.cache, "folder that keeps references for the next time; default in the user's cache folder");
     motion->add_option("--dump", options.dump, "folder for each frame, its reference and its FLIP map (.png)");

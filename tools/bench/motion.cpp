@@ -1,11 +1,11 @@
 #include "tools/bench/motion.h"
 
+#include "image/write_image.h"
 #include "runtime/gpu/cache_folder.h"
 #include "shaders/lib/terms.h"
 #include "tools/bench/motion_report.h"
 #include "tools/bench/reference_cache.h"
 #include "tools/compare/picture.h"
-#include "image/write_image.h"
 
 #include <algorithm>
 #include <cmath>
@@ -27,7 +27,8 @@ class References
 public:
     References(const OpenedPackage& opened, const MotionBenchOptions& options)
         : opened_(opened), options_(options), cache_(folderOf(options)), package_(packageHash(opened.package)),
-          renderer_(*opened.device, *opened.scene, Mode::kReference, options.width, options.height), rec_(*opened.device)
+          renderer_(*opened.device, *opened.scene, Mode::kReference, options.width, options.height),
+          rec_(*opened.device)
     {
     }
 
@@ -46,8 +47,9 @@ public:
 private:
     static std::filesystem::path folderOf(const MotionBenchOptions& options)
     {
-        return !options.cache.empty() ? options.cache
-                                      : cacheFolder().value_or(std::filesystem::temp_directory_path() / "lumicut") / "references";
+        return !options.cache.empty()
+                   ? options.cache
+                   : cacheFolder().value_or(std::filesystem::temp_directory_path() / "lumicut") / "references";
     }
 
     ImageF render(const ReferenceKey& key)
@@ -85,7 +87,8 @@ void excludeCaustics(std::vector<uint8_t>& plain, const ImageF& all, const Image
         {
             float light = 0, caustic = 0;
             for (uint32_t row = y - std::min(y, kReach); row <= std::min(y + kReach, all.height - 1); ++row)
-                for (uint32_t i = 3 * (row * all.width + x - std::min(x, kReach)); i < 3 * (row * all.width + std::min(x + kReach, all.width - 1) + 1); ++i)
+                for (uint32_t i = 3 * (row * all.width + x - std::min(x, kReach));
+                     i < 3 * (row * all.width + std::min(x + kReach, all.width - 1) + 1); ++i)
                 {
                     light += all.rgb[i];
                     caustic += caustics.rgb[i];
@@ -117,7 +120,8 @@ Status measureSequence(const OpenedPackage& opened, const MotionBenchOptions& op
     References references(opened, options);
     Recorder rec(*opened.device);
     const uint32_t term = options.settings.term;
-    const bool has_caustics = opened.scene->info().caustic_target_count > 0 && (term == gpu::kTermAll || term == gpu::kTermCaustics);
+    const bool has_caustics =
+        opened.scene->info().caustic_target_count > 0 && (term == gpu::kTermAll || term == gpu::kTermCaustics);
     for (int32_t number = -int32_t(options.warm_up); number < int32_t(options.frames); ++number)
     {
         rec.begin(opened.scene->descriptorSet());
@@ -141,7 +145,8 @@ Status measureSequence(const OpenedPackage& opened, const MotionBenchOptions& op
         frame.plain = geometry.plainPixels(frame.hits);
         if (has_caustics)
         {
-            const auto caustics = references.picture(camera(number), gpu::kTermCaustics, std::max(options.sample_count / 8, 1u));
+            const auto caustics =
+                references.picture(camera(number), gpu::kTermCaustics, std::max(options.sample_count / 8, 1u));
             if (!caustics)
                 return caustics.error();
             excludeCaustics(frame.plain, *reference, *caustics);
@@ -178,10 +183,14 @@ Status benchMotion(const MotionBenchOptions& options)
     const auto opened = openPackage(options);
     if (!opened)
         return opened.error();
-    if (const Status status = Renderer::checkSize(*opened->device, options.width, options.height, modeOf(options), options.settings); !status)
+    if (const Status status =
+            Renderer::checkSize(*opened->device, options.width, options.height, modeOf(options), options.settings);
+        !status)
         return status;
-    if (std::error_code failed; !options.dump.empty() && (std::filesystem::create_directories(options.dump, failed), failed))
-        return Error{ExitCode::kIo, fmt::format("the folder cannot be made: {}", failed.message()), options.dump.string()};
+    if (std::error_code failed;
+        !options.dump.empty() && (std::filesystem::create_directories(options.dump, failed), failed))
+        return Error{ExitCode::kIo, fmt::format("the folder cannot be made: {}", failed.message()),
+                     options.dump.string()};
     const Geometry geometry(*opened, std::max(options.width * options.height, 1024u));
     const auto camera = chooseMotion(options.path, options.frames_per_second, *opened, geometry);
     if (!camera)
@@ -189,7 +198,8 @@ Status benchMotion(const MotionBenchOptions& options)
     MotionResult result;
     if (const Status status = measureSequence(*opened, options, *camera, geometry, result); !status)
         return status;
-    result.ghost = measureGhost(*opened, options, *camera);
+    if (options.ghost)
+        result.ghost = measureGhost(*opened, options, *camera);
     (options.json ? printJson : print)(options, *opened, result);
     return Success{};
 }

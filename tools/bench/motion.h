@@ -12,10 +12,11 @@ struct MotionBenchOptions : BenchOptions
     uint32_t frames = 60;      // judged
     uint32_t warm_up = 8;      // before them, on the same path
     double frames_per_second = 30;
-    uint32_t sample_count = 256;  // a pixel, of the references
-    uint32_t seed = 0;            // another one, other noise
-    std::filesystem::path cache;  // of references; empty: the user's cache folder, else the system's for temporary files
-    std::filesystem::path dump;   // for pictures of each frame; empty: none
+    uint32_t sample_count = 256; // a pixel, of the references
+    bool ghost = true;           // measure ghosts too
+    uint32_t seed = 0;           // another one, other noise
+    std::filesystem::path cache; // of references; empty: the user's cache folder, else the system's for temporary files
+    std::filesystem::path dump;  // for pictures of each frame; empty: none
     Settings settings;
 };
 

@@ -17,7 +17,8 @@ std::vector<float> distances(const Geometry& geometry, std::span<const gpu::Ray>
     return result;
 }
 
-/// Of the surface in the picture's centre, or, where there is none, the median of all; infinite where the camera sees none.
+/// Of the surface in the picture's centre, or, where there is none, the median of all; infinite where the camera sees
+/// none.
 float viewDistance(const Geometry& geometry, const Camera& camera)
 {
     constexpr uint32_t kWidth = 33, kHeight = 19; // odd: one ray goes through the centre
@@ -34,11 +35,14 @@ Result<CameraOfFrame> orbit(double frames_per_second, const Camera& camera, cons
     const gpu::vec3 right = cross(camera.forward, camera.up);
     const float ahead = viewDistance(geometry, camera), endless = std::numeric_limits<float>::infinity();
     if (!std::isfinite(ahead))
-        return Error{ExitCode::kInvalid, "the camera sees no surface that it could orbit; choose another with --camera"};
-    const std::array rays{gpu::Ray{camera.position, endless, -1 * right, 0}, gpu::Ray{camera.position, endless, right, 1}};
+        return Error{ExitCode::kInvalid,
+                     "the camera sees no surface that it could orbit; choose another with --camera"};
+    const std::array rays{gpu::Ray{camera.position, endless, -1 * right, 0},
+                          gpu::Ray{camera.position, endless, right, 1}};
     const std::vector<float> beside = distances(geometry, rays);
     const float radius = orbitRadius(ahead, beside[0], beside[1]);
-    return CameraOfFrame([=](int32_t frame) { return orbitingCamera(camera, radius, float(frame / frames_per_second)); });
+    return CameraOfFrame([=](int32_t frame)
+                         { return orbitingCamera(camera, radius, float(frame / frames_per_second)); });
 }
 } // namespace
 
@@ -49,8 +53,11 @@ Result<CameraOfFrame> chooseMotion(const std::string& path, double frames_per_se
     if (path == "orbit")
         return orbit(frames_per_second, opened.camera, geometry);
     if (path == "sway")
-        return CameraOfFrame([&opened, frames_per_second](int32_t frame)
-                             { return movedCamera(opened.camera, opened.scene->info(), float(frame * kSwayPerSecond / frames_per_second)); });
+        return CameraOfFrame(
+            [&opened, frames_per_second](int32_t frame) {
+                return movedCamera(opened.camera, opened.scene->info(),
+                                   float(frame * kSwayPerSecond / frames_per_second));
+            });
     const auto read = CameraPath::load(path, packageCameras(opened.package));
     if (!read)
         return read.error().about(path);

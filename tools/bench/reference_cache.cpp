@@ -52,7 +52,8 @@ uint64_t ReferenceKey::hash() const
     std::vector<float> numbers;
     for (const gpu::vec3 v : {camera.position, camera.forward, camera.up})
         numbers.insert(numbers.end(), {v.x, v.y, v.z});
-    numbers.insert(numbers.end(), {camera.vertical_fov, camera.orthographic_height, camera.near_plane, camera.far_plane});
+    numbers.insert(numbers.end(),
+                   {camera.vertical_fov, camera.orthographic_height, camera.near_plane, camera.far_plane});
     uint64_t hash = XXH3_64bits_withSeed(numbers.data(), numbers.size() * sizeof(float), package);
     const std::array counts{width, height, sample_count, depth_limit, term};
     return XXH3_64bits_withSeed(counts.data(), sizeof(counts), hash);
@@ -77,7 +78,8 @@ Result<ImageF> ReferenceCache::picture(const ReferenceKey& key, const std::funct
     std::error_code failed;
     std::filesystem::create_directories(folder_, failed);
     if (failed)
-        return Error{ExitCode::kIo, fmt::format("the folder for references cannot be made: {}", failed.message()), folder_.string()};
+        return Error{ExitCode::kIo, fmt::format("the folder for references cannot be made: {}", failed.message()),
+                     folder_.string()};
     ImageF image = render();
     check(image.width == key.width && image.height == key.height, "{} x {}", image.width, image.height);
     if (const Status status = write(path, image); !status)

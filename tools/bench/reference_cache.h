@@ -29,8 +29,8 @@ public:
     /// @param folder made when the first picture is kept
     explicit ReferenceCache(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
-    /// The picture of that key; one that is not there, or is damaged, is rendered and kept. Several programs may do so at a
-    /// time. @return kIo where it cannot be written
+    /// The picture of that key; one that is not there, or is damaged, is rendered and kept. Several programs may do so
+    /// at a time. @return kIo where it cannot be written
     Result<ImageF> picture(const ReferenceKey& key, const std::function<ImageF()>& render) const;
     std::filesystem::path fileOf(const ReferenceKey& key) const;
 

@@ -7,7 +7,10 @@
 
 namespace
 {
-gpu::vec3 difference(gpu::vec3 a, gpu::vec3 b) { return a + -1 * b; }
+gpu::vec3 difference(gpu::vec3 a, gpu::vec3 b)
+{
+    return a + -1 * b;
+}
 
 /// The four pixels whose centres are around a place, and their bilinear weights. At the border they are the nearest.
 struct Neighbours
@@ -42,13 +45,15 @@ bool sameSurface(const FirstHit& a, const FirstHit& b)
 /// Catmull and Rom's weights of the values at -1, 0, 1 and 2 for one at t in 0..1.
 std::array<float, 4> cubicWeights(float t)
 {
-    return {0.5f * t * (t * (2 - t) - 1), 0.5f * (t * t * (3 * t - 5) + 2), 0.5f * t * (t * (4 - 3 * t) + 1), 0.5f * t * t * (t - 1)};
+    return {0.5f * t * (t * (2 - t) - 1), 0.5f * (t * t * (3 * t - 5) + 2), 0.5f * t * (t * (4 - 3 * t) + 1),
+            0.5f * t * t * (t - 1)};
 }
 } // namespace
 
 gpu::Ray centerRay(const gpu::CameraParams& camera, uint32_t column, uint32_t row)
 {
-    const float x = 2 * (float(column) + 0.5f) / float(camera.width) - 1, y = 1 - 2 * (float(row) + 0.5f) / float(camera.height);
+    const float x = 2 * (float(column) + 0.5f) / float(camera.width) - 1,
+                y = 1 - 2 * (float(row) + 0.5f) / float(camera.height);
     const gpu::vec3 offset = x * camera.right + y * camera.up;
     gpu::Ray ray{camera.position, std::numeric_limits<float>::infinity(), camera.forward, row * camera.width + column};
     float per_depth = 1; // metres along the ray for one along forward
@@ -76,7 +81,8 @@ std::vector<gpu::Ray> centerRays(const gpu::CameraParams& camera)
     return rays;
 }
 
-FirstHits firstHits(const gpu::CameraParams& camera, std::span<const gpu::Hit> hits, std::span<const gpu::BvhTriangle> triangles)
+FirstHits firstHits(const gpu::CameraParams& camera, std::span<const gpu::Hit> hits,
+                    std::span<const gpu::BvhTriangle> triangles)
 {
     const std::vector<gpu::Ray> rays = centerRays(camera);
     check(hits.size() == rays.size(), "{} hits of {} rays", hits.size(), rays.size());
@@ -90,12 +96,14 @@ FirstHits firstHits(const gpu::CameraParams& camera, std::span<const gpu::Hit> h
             continue;
         }
         const gpu::BvhTriangle& triangle = triangles[hits[i].slot];
-        const gpu::vec3 position = rays[i].origin + hits[i].t * rays[i].direction, from_eye = difference(position, camera.position);
+        const gpu::vec3 position = rays[i].origin + hits[i].t * rays[i].direction,
+                        from_eye = difference(position, camera.position);
         const float distance = camera.orthographic ? 1 : std::sqrt(dot(from_eye, from_eye));
-        result.hits.push_back({.position = position,
-                               .normal = normalize(cross(difference(triangle.v1, triangle.v0), difference(triangle.v2, triangle.v0))),
-                               .footprint = pixelSide(camera) * distance,
-                               .slot = hits[i].slot});
+        result.hits.push_back(
+            {.position = position,
+             .normal = normalize(cross(difference(triangle.v1, triangle.v0), difference(triangle.v2, triangle.v0))),
+             .footprint = pixelSide(camera) * distance,
+             .slot = hits[i].slot});
     }
     return result;
 }
@@ -114,8 +122,8 @@ PicturePoint project(const gpu::CameraParams& camera, const FirstHit& hit)
 std::vector<PicturePoint> reproject(const FirstHits& now, const FirstHits& then)
 {
     const uint32_t width = now.camera.width, height = now.camera.height;
-    check(width == then.camera.width && height == then.camera.height, "{} x {} and {} x {}", width, height, then.camera.width,
-          then.camera.height);
+    check(width == then.camera.width && height == then.camera.height, "{} x {} and {} x {}", width, height,
+          then.camera.width, then.camera.height);
     std::vector<PicturePoint> places(now.hits.size());
     for (size_t i = 0; i < places.size(); ++i)
     {
@@ -134,8 +142,8 @@ std::vector<PicturePoint> reproject(const FirstHits& now, const FirstHits& then)
 
 ImageF warp(const ImageF& picture, std::span<const PicturePoint> places, const ImageF& unseen)
 {
-    check(places.size() == picture.pixelCount() && places.size() == unseen.pixelCount(), "{} places of {} and {} pixels", places.size(),
-          picture.pixelCount(), unseen.pixelCount());
+    check(places.size() == picture.pixelCount() && places.size() == unseen.pixelCount(),
+          "{} places of {} and {} pixels", places.size(), picture.pixelCount(), unseen.pixelCount());
     ImageF result = unseen;
     for (size_t i = 0; i < places.size(); ++i)
     {

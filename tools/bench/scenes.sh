@@ -23,7 +23,7 @@ need_value() {
 # Builds, unless LUMICUT_BIN names a folder with the programs.
 build_programs() {
     if [[ -z ${LUMICUT_BIN-} ]]; then
-        "$root/tools/build.sh" release lumicut-compile lumicut-play lumicut-scenes lumicut-compare lumicut-bench >&2
+        "$root/tools/build.sh" release lumicut-compile lumicut-play lumicut-scenes lumicut-compare lumicut-bench lumicut-sheet >&2
     fi
 }
 

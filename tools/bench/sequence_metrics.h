@@ -24,8 +24,8 @@ struct SequenceFrame
 {
     ImageF picture, reference; // as a display shows them: linear, 0..1
     FirstHits hits;
-    std::vector<uint8_t> plain; // [pixels]: neither a mirror, nor glass, nor a caustic; a sharp reflection moves otherwise
-                                // than the surface that it is in
+    std::vector<uint8_t> plain; // [pixels]: neither a mirror, nor glass, nor a caustic; a sharp reflection moves
+                                // otherwise than the surface that it is in
 };
 
 /// Mean LDR-FLIP between a frame and an earlier one warped onto it, over the pixels that were seen then.
