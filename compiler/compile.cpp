@@ -9,7 +9,6 @@
 #include "compiler/flatten.h"
 #include "compiler/gltf_material.h"
 #include "compiler/import_gltf.h"
-#include "compiler/large_memory.h"
 #include "compiler/light_need.h"
 #include "compiler/package_meta.h"
 #include "compiler/parallel.h"

@@ -1,6 +1,7 @@
 #include "format/fold_geometry.h"
 
 #include "format/check.h"
+#include "format/large_memory.h"
 #include "format/package_layout.h"
 
 #include <algorithm>
@@ -96,17 +97,17 @@ StoredGeometry foldGeometry(const Geometry& geometry)
                        .positions = geometry.positions,
                        .vertices = {},
                        .extras = {}};
-    out.triangles.reserve(geometry.triangles.size());
+    reserveLarge(out.triangles, geometry.triangles.size());
     for (const gpu::uvec3& vertices : geometry.triangles)
         out.triangles.push_back({vertices, 0});
-    out.leaf_triangles.reserve(geometry.leaf_triangles.size());
+    reserveLarge(out.leaf_triangles, geometry.leaf_triangles.size());
     for (const gpu::BvhTriangle& t : geometry.leaf_triangles)
     {
         check(t.material <= kTriangleMaterialMask, "material {}", t.material);
         out.leaf_triangles.push_back(t.triangle);
         out.triangles[t.triangle].material = t.material | t.flags << kTriangleFlagsShift;
     }
-    out.vertices.reserve(geometry.attributes.size());
+    reserveLarge(out.vertices, geometry.attributes.size());
     for (const gpu::VertexAttributes& v : geometry.attributes)
         out.vertices.push_back({v.normal, v.tangent, v.uv0});
     if (!std::all_of(geometry.attributes.begin(), geometry.attributes.end(), isDefault))

@@ -1,5 +1,7 @@
 #include "format/unfold_geometry.h"
 
+#include "format/large_memory.h"
+
 #include <algorithm>
 #include <bit>
 #include <limits>
@@ -252,6 +254,7 @@ template <typename T>
 std::span<const T> allocate(std::unique_ptr<T[]>& memory, size_t count)
 {
     memory = std::make_unique_for_overwrite<T[]>(count);
+    preferHugePages(memory.get(), count * sizeof(T));
     return {memory.get(), count};
 }
 } // namespace
