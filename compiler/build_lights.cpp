@@ -169,7 +169,6 @@ std::vector<double> sampleShares(const std::vector<Candidate>& candidates)
 LightTables buildLights(const SceneData& scene)
 {
     LightTables tables;
-    tables.triangle_lights.assign(scene.mesh.triangles.size(), gpu::kNone);
     tables.caustic_targets = findCausticTargets(scene);
 
     std::vector<Candidate> candidates = collect(scene);
@@ -184,11 +183,7 @@ LightTables buildLights(const SceneData& scene)
     {
         Candidate& c = candidates[i];
         c.light.pmf = float(shares[i]);
-        if (c.light.triangle != gpu::kNone)
-        {
-            tables.triangle_lights[c.light.triangle] = uint32_t(tables.lights.size());
-            ++tables.emissive_triangles;
-        }
+        tables.emissive_triangles += c.light.triangle != gpu::kNone ? 1 : 0;
         tables.lights.push_back(c.light);
         tables.powers.push_back(float(c.power));
     }

@@ -6,7 +6,6 @@ struct LightTables
 {
     std::vector<gpu::Light> lights;          // punctual, then emissive triangles, then the environment
     std::vector<gpu::AliasEntry> aliases;    // [lights.size()]
-    std::vector<uint32_t> triangle_lights;   // [triangle_count] index into lights or gpu::kNone
     std::vector<gpu::CausticTarget> caustic_targets;
     std::vector<float> powers;               // [lights.size()] W, luminance
     uint32_t emissive_triangles = 0;

@@ -1,7 +1,7 @@
 #include "compiler/bvh_tree.h"
-#include "compiler/large_memory.h"
 #include "compiler/parallel.h"
 #include "format/check.h"
+#include "format/large_memory.h"
 
 #include <algorithm>
 #include <unordered_map>

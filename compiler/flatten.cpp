@@ -2,9 +2,9 @@
 
 #include "compiler/encode.h"
 #include "compiler/gltf_material.h"
-#include "compiler/large_memory.h"
 #include "compiler/tangents.h"
 #include "format/check.h"
+#include "format/large_memory.h"
 
 #include <fmt/format.h>
 

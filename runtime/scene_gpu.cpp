@@ -171,16 +171,10 @@ void SceneGpu::setEmission(Recorder& rec, uint32_t index, gpu::vec3 emission)
 void SceneGpu::createImages(const package::Package& package)
 {
     constexpr std::array<uint32_t, 4> kWhite{~0u, ~0u, ~0u, ~0u};
-    const uint32_t page_count = package.meta().texture_pages()->size();
-    for (uint32_t p = 0; p < gpu::kTexturePageCount; ++p)
-    {
-        if (p >= page_count)
-        {
-            pages_.push_back(device_.uploadImage("scene.no_page", {.array = true}, std::as_bytes(std::span(kWhite).first(1))));
-            continue;
-        }
+    for (uint32_t p = 0; p < package.meta().texture_pages()->size(); ++p)
         pages_.push_back(uploadTexturePage(device_, package, p));
-    }
+    if (pages_.size() < gpu::kTexturePageCount) // one for all that are not there
+        pages_.push_back(device_.uploadImage("scene.no_page", {.array = true}, std::as_bytes(std::span(kWhite).first(1))));
     if (const auto* environment = package.meta().environment())
         environment_ = device_.uploadImage("scene.environment",
                                            {.format = VK_FORMAT_R32G32B32A32_SFLOAT, .width = environment->width(), .height = environment->height()},
@@ -233,8 +227,8 @@ void SceneGpu::createDescriptorSet()
     for (const Buffer* buffer : bound_)
         buffers.push_back({buffer->handle(), 0, VK_WHOLE_SIZE});
     std::vector<VkDescriptorImageInfo> images;
-    for (const Image& page : pages_)
-        images.push_back({texture_sampler_, page.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL});
+    for (size_t p = 0; p < gpu::kTexturePageCount; ++p)
+        images.push_back({texture_sampler_, pages_[std::min(p, pages_.size() - 1)].view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL});
     images.push_back({environment_sampler_, environment_.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL});
 
     std::vector<VkWriteDescriptorSet> writes;

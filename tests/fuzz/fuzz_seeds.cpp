@@ -53,7 +53,7 @@ void savePackages(const fs::path& folder)
     bare.environment_texels.clear();
     bare.meta.environment.reset();
     bare.caustic_targets.clear();
-    bare.triangles[1].light = gpu::kNone;
+    bare.extras.clear();
     save(folder / "bare.lumi", bare, 0);
 }
 
