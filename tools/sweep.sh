@@ -4,6 +4,8 @@
 #     -j N, --jobs N     files at a time; default as many as there are processors
 #     --size WxH         of the pictures; default 96x54
 #     --frames N         of each picture; default 4
+#     --mode MODE        of them, as lumicut-play takes it; default gi. On software Vulkan, preparing kernels for mode
+#                        reference takes a fifth of the time, and 32 frames are few enough
 #     --timeout SECONDS  for each compilation and each picture; default 60
 #     --largest MB       leaves out files that are larger, with the buffers and images in their folder; default 200
 #     --no-pictures      compiles only
@@ -16,8 +18,8 @@
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/bench/scenes.sh"
 
-jobs=$(nproc) size=96x54 frames=4 timeout=60 largest=200 no_pictures=0 out=$root/build/sweep
-read_options j=jobs jobs= size= frames= timeout= largest= no-pictures out= -- "$@"
+jobs=$(nproc) size=96x54 frames=4 mode=gi timeout=60 largest=200 no_pictures=0 out=$root/build/sweep
+read_options j=jobs jobs= size= frames= mode= timeout= largest= no-pictures out= -- "$@"
 ((${#operands[@]})) || fail 1 "name a folder (see --help)"
 [[ -n ${LUMICUT_BIN-} ]] || "$root/tools/build.sh" release lumicut-compile lumicut-play lumicut-sheet >&2
 rm -rf "$out/rows" "$out/pictures"
@@ -51,8 +53,8 @@ sweep_one() {
         ((damaged == 0)) || result=repaired
         if ((!no_pictures)); then
             code=0
-            timeout -k 5 "$timeout" "$bin/lumicut-play" "$base.lumi" --headless --size "$size" --frames "$frames" --preset preview \
-                --output "$out/pictures/$number.png" >"$base.log" 2>&1 || code=$?
+            timeout -k 5 "$timeout" "$bin/lumicut-play" "$base.lumi" --headless --size "$size" --frames "$frames" --mode "$mode" \
+                --preset preview --output "$out/pictures/$number.png" >"$base.log" 2>&1 || code=$?
             case $(ended "$code") in
             ok) ;;
             refused) result=dark reason="lumicut-play ends with $code: $(tail -n 1 "$base.log")" ;;
@@ -69,7 +71,7 @@ sweep_one() {
         >"$base.row"
 }
 export -f sweep_one ended json_number
-export out bin timeout size frames no_pictures
+export out bin timeout size frames mode no_pictures
 
 files=$(find "${operands[@]}" -type f \( -iname '*.gltf' -o -iname '*.glb' \) -size "-$((largest * 1024))k" | LC_ALL=C sort)
 [[ -n $files ]] || fail 2 "there are no glTF files below ${operands[*]}"
