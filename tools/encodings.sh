@@ -18,6 +18,11 @@ read_options size= frames= preset= out= -- "$@"
 mkdir -p "$out"
 build_programs
 
+# damage_in REPORT: the first damaged item.
+damage_in() {
+    sed -n '/"message":/h; /"damage": true/{x; s/^ *"message": "\(.*\)",\{0,1\}$/\1/p; q}' "$1"
+}
+
 missed=0 first=
 printf '%-8s %8s %8s %9s  %s\n' 'ratio R' G B relMSE file
 for file in "${operands[@]}"; do
@@ -25,7 +30,7 @@ for file in "${operands[@]}"; do
     if ! "$bin/lumicut-compile" "$file" -q -f -o "$name.lumi" --report "$name.json" >"$name.log" 2>&1; then
         printf '%-36s  %s: refused: %s\n' '' "$file" "$(head -n 1 "$name.log" | sed 's/^.*: error: //')"
     elif grep -q '"damage": true' "$name.json"; then
-        printf '%-36s  %s: damaged: %s\n' '' "$file" "$(head -n 1 "$name.log" | sed 's/^.*: warning: //')"
+        printf '%-36s  %s: damaged: %s\n' '' "$file" "$(damage_in "$name.json")"
     else
         "$bin/lumicut-play" "$name.lumi" --headless --mode gi --preset "$preset" --size "$size" --frames "$frames" \
             --output "$name.exr" >"$name.log" 2>&1 || { cat "$name.log" >&2 && fail 4 "$file could not be rendered"; }
