@@ -54,7 +54,8 @@ uint32_t materialFeatures(const gpu::Material& material)
                         (material.dispersion > 0 && material.transmission > 0 ? gpu::kFeatureDispersion : 0u) |
                         (material.diffuse_transmission > 0 ? gpu::kFeatureDiffuseTransmission : 0u);
     for (const package::MaterialTexture& texture : package::kMaterialTextures)
-        features |= material.*texture.index != gpu::kNone ? texture.feature : 0u;
+        if (material.*texture.index != gpu::kNone) // every map of normals wants tangents, the coat's too
+            features |= texture.feature | (texture.encoding == gpu::kEncodingNormal ? gpu::kFeatureNormalMaps : 0u);
     return features;
 }
 

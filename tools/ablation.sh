@@ -16,30 +16,10 @@
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/bench/scenes.sh"
 
-quick=0 scene=atrium size= spp= seeds=4 travel= out=$root/build/truth
+quick=0 scene=atrium size= spp= seeds=4 travel=
 common=() extra=()
-while (($#)); do
-    case $1 in
-    --help | -h) usage_of "${BASH_SOURCE[0]}" && exit ;;
-    --quick) quick=1 ;;
-    --scene | --size | --spp | --seeds | --travel | --set | --row)
-        need_value "$1" $#
-        case $1 in
-        --scene) scene=$2 ;;
-        --size) size=$2 ;;
-        --spp) spp=$2 ;;
-        --seeds) seeds=$2 ;;
-        --travel) travel=$2 ;;
-        --set) common+=(--set "$2") ;;
-        --row) extra+=("$2") ;;
-        esac
-        shift
-        ;;
-    -*) fail 1 "unknown option $1 (see --help)" ;;
-    *) out=$1 ;;
-    esac
-    shift
-done
+read_options quick scene= size= spp= seeds= travel= set++=common row+=extra -- "$@"
+out=${operands[0]:-$root/build/truth}
 : "${travel:=$((quick ? 20 : 60))}" "${spp:=$((quick ? 256 : 4096))}" "${size:=$((quick ? 128 : 320))x$((quick ? 72 : 180))}"
 mkdir -p "$out"
 build_programs

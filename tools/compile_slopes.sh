@@ -3,21 +3,13 @@
 #   tools/compile_slopes.sh [OUTDIR] [--sizes N,N,...] [--jobs N] [--scene FILE]
 # --scene measures that scene instead: cold, unchanged, compiled again from the cache, and (of a .glb) with one texture changed.
 set -euo pipefail
-root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
-bin=$root/build/release/bin
-out=
+. "$(dirname "${BASH_SOURCE[0]}")/bench/scenes.sh"
+
 sizes=100000,1000000,5000000
 jobs=$(nproc)
 scene=
-while (($# > 0)); do
-    case $1 in
-    --sizes) sizes=$2; shift 2 ;;
-    --jobs) jobs=$2; shift 2 ;;
-    --scene) scene=$2; shift 2 ;;
-    -*) echo "usage: tools/compile_slopes.sh [OUTDIR] [--sizes N,N,...] [--jobs N] [--scene FILE]" >&2; exit 1 ;;
-    *) out=$1; shift ;;
-    esac
-done
+read_options sizes= jobs= scene= -- "$@"
+out=${operands[0]-}
 if [[ -z $out ]]; then
     out=$(mktemp -d)
     trap 'rm -rf "$out"' EXIT

@@ -20,32 +20,11 @@
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/bench/scenes.sh"
 
-quick=0 terms=0 noise=0 spp= frames= size= presets=default,preview out=$root/build/truth
+quick=0 terms=0 noise=0 spp= frames= size= presets=default,preview
 scenes=$(measured_scenes)
 settings=()
-while (($#)); do
-    case $1 in
-    --help | -h) usage_of "${BASH_SOURCE[0]}" && exit ;;
-    --quick) quick=1 ;;
-    --terms) terms=1 ;;
-    --noise) noise=1 ;;
-    --scenes | --presets | --spp | --frames | --size | --set)
-        need_value "$1" $#
-        case $1 in
-        --scenes) scenes=$2 ;;
-        --presets) presets=$2 ;;
-        --spp) spp=$2 ;;
-        --frames) frames=$2 ;;
-        --size) size=$2 ;;
-        --set) settings+=(--set "$2") ;;
-        esac
-        shift
-        ;;
-    -*) fail 1 "unknown option $1 (see --help)" ;;
-    *) out=$1 ;;
-    esac
-    shift
-done
+read_options quick terms noise scenes= presets= spp= frames= size= set++=settings -- "$@"
+out=${operands[0]:-$root/build/truth}
 : "${spp:=$((quick ? 256 : 4096))}" "${frames:=$((quick ? 16 : 256))}"
 for scene in ${scenes//,/ }; do
     of_scene "$scene" name >/dev/null
