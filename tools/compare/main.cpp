@@ -64,7 +64,7 @@ std::string jsonText(const Report& report)
     return json.dump(2) + "\n";
 }
 
-/// One line for scripts, see README.md.
+/// One line for scripts, see tools/compare/README.md.
 std::string tsvText(const Report& report)
 {
     const Metrics& m = report.metrics;
@@ -153,7 +153,7 @@ int main(int argc, char** argv)
         ->expected(4);
     addWelchOptions(app, options.welch);
     app.add_flag("--json", options.json, "print the result as JSON");
-    app.add_flag("--tsv", options.tsv, "print one line of tab-separated figures (see README.md)")->excludes("--json");
+    app.add_flag("--tsv", options.tsv, "print one line of tab-separated figures (see tools/compare/README.md)")->excludes("--json");
     try
     {
         app.parse(argc, argv);
