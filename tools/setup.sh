@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Installs the Debian 12 packages that Lumicut needs and that are not there yet; README.md says what each is for.
+# Installs the Debian 12 packages that Lumicut needs and that are not there yet; docs/building.md says what each is for.
 #   tools/setup.sh          installs what is missing; where nothing is, only looks (well under a second)
 #   tools/setup.sh --list   prints the packages
 set -euo pipefail
@@ -19,7 +19,7 @@ packages=(
     # tools, and what several programs share
     libarchive-dev libcli11-dev libfmt-dev libopenexr-dev libssl-dev
     # tests
-    clang-14 libclang-rt-14-dev libgtest-dev python3-jsonschema vulkan-validationlayers xauth xvfb zstd
+    clang-14 clang-format-14 clang-tidy-14 libclang-rt-14-dev libgtest-dev python3-jsonschema vulkan-validationlayers xauth xvfb zstd
 )
 
 if [[ ${1-} == --list ]]; then
