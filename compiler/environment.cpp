@@ -14,7 +14,7 @@ namespace
 {
 constexpr double kPi = std::numbers::pi;
 
-/// The share of the sphere's 4 pi that one texel in `row` of a `width` x `height` map covers.
+/// The fraction of the sphere's 4 pi that one texel in `row` of a `width` x `height` map covers.
 double sphereShare(uint32_t width, uint32_t height, uint32_t row)
 {
     return (std::cos(kPi * row / height) - std::cos(kPi * (row + 1) / height)) / (2.0 * width);
@@ -32,7 +32,7 @@ double tentIntegral(double index, double from, double to)
 }
 
 /// Means of a bilinearly filtered signal over `cells` equal parts.
-/// @param value value(i) of sample i, -1 <= i <= count: outside it repeats or clamps as the caller says
+/// @param value value(i) of sample i, -1 <= i <= count: the caller repeats or clamps at the ends
 template <typename Value, typename Store>
 void filterLine(uint32_t count, uint32_t cells, const Value& value, const Store& store)
 {
@@ -129,9 +129,9 @@ EnvironmentImportance buildImportance(const EnvironmentImage& image)
     double total = 0;
     for (size_t i = 0; i < weights.size(); ++i)
         total += weights[i] *= sphereShare(importance.width, importance.height, uint32_t(i / importance.width));
-    if (total == 0) // a black map: any distribution will do, as long as it is one
+    if (total == 0) // a black map: any valid distribution will do
         std::fill(weights.begin(), weights.end(), total = 1.0);
-    // However dark beside the rest, what gives light must keep a probability that single precision can divide by.
+    // However dark relative to the rest, texels that emit need a probability that single precision can divide by.
     for (double& weight : weights)
         weight = weight > 0 ? std::max(weight, total * 1e-12) : 0;
     total = std::accumulate(weights.begin(), weights.end(), 0.0);

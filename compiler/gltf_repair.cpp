@@ -97,7 +97,7 @@ private:
         }
     }
 
-    /// Those for which `repair` returns false are lost: nothing may refer to them.
+    /// Items for which `repair` returns false are lost: nothing may refer to them.
     template <typename Function>
     void loseEach(const char* name, const Function& repair)
     {
@@ -110,7 +110,7 @@ private:
         });
     }
 
-    /// What the reader takes and nothing refers to.
+    /// Items that the reader accepts and nothing refers to.
     static json harmless(std::string_view name)
     {
         if (name == "bufferViews")
@@ -150,7 +150,7 @@ private:
         return std::nullopt;
     }
 
-    /// Whether `value` names an item of a list; says so where it does not. `what` is the item's noun.
+    /// Whether `value` is the index of an item of a list; adds a warning if it is not. `what` is the item's noun.
     bool names(const json& value, const std::string& pointer, const char* target, const char* what, const char* stand_in)
     {
         const std::optional<size_t> i = index(value);
@@ -470,7 +470,7 @@ private:
         });
     }
 
-    /// Keeps those entries of an array of node indices that exist and that `keep` wants.
+    /// Keeps those entries of an array of node indices that exist and for which `keep` is true.
     template <typename Keep>
     void repairChildren(const JsonPlace& place, const char* key, const Keep& keep)
     {
