@@ -303,7 +303,7 @@ TEST_F(Lobes, CoatReflectsBySchlickFrom4Percent)
     }
 }
 
-/// Its own albedo is the integral of the lobe, and takes from the base what KHR_materials_sheen says; its albedo
+/// Its own albedo is the integral of the lobe, and reduces the base as KHR_materials_sheen specifies; its albedo
 /// there is a fit, good to 0.022.
 TEST_F(Lobes, SheenReflectsItsIntegralAndScalesTheBaseByIt)
 {

@@ -1,5 +1,5 @@
 # What the measuring scripts share: programs, packages and cached references. Sourced, never run.
-# Wants `out`, the folder to write to. Everything that is not the result goes to stderr.
+# Set `out` first: the folder to write to. Everything but the result goes to stderr.
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 shared=$root/../shared
@@ -27,9 +27,9 @@ build_programs() {
     fi
 }
 
-# The scenes that the scripts know. size, quick: of pictures, and of those with --quick. flip: most LDR-FLIP of a first frame.
-# depth: most vertices of a path of the reference. measured: what truth.sh looks at, comma-separated; "truth" is mode gi against
-# the reference, KIND:TWIN the scene against another one (see there), "-" nothing unless asked for. file: under shared/ where
+# The scenes of the scripts. size, quick: of pictures, and of those with --quick. flip: most LDR-FLIP of a first frame.
+# depth: most vertices of a path of the reference. measured: what truth.sh measures, comma-separated; "truth" is mode gi against
+# the reference, KIND:TWIN the scene against another one (see there), "-" nothing by default. file: under shared/ where
 # lumicut-scenes does not make it; options of its compilation follow.
 scene_table='
 name             size    quick  flip depth measured                   file
@@ -64,7 +64,7 @@ truth_cornell    256x256 96x96  0.06 64    -                          scenes/tru
 truth_caustic    256x256 96x96  0.06 64    -                          scenes/truth/cornell_caustic.glb
 '
 
-# measured_scenes: the names of those that truth.sh measures unless told otherwise.
+# measured_scenes: the names of those that truth.sh measures by default.
 measured_scenes() {
     awk 'NF && $1 != "name" && $6 != "-" { print $1 }' <<<"$scene_table"
 }
