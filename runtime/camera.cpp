@@ -73,5 +73,6 @@ gpu::CameraParams cameraParams(const Camera& camera, uint32_t width, uint32_t he
             .far_plane = camera.far_plane,
             .sample_count = 1,
             .first_sample = 0,
-            .seed = 0};
+            .seed = 0,
+            .jitter = {-1, -1}};
 }

@@ -1,13 +1,16 @@
 // Global illumination after Wang et al. 2009: photons, their tree, the illumination cut, irradiance samples, final
 // gathering, interpolation, glossy reflection and caustics, all on the GPU.
 #pragma once
-#include "runtime/settings.h"
+#include "runtime/frame/light_buffers.h"
+#include "runtime/frame/plan.h"
 #include "runtime/stages/caustics.h"
+#include "runtime/stages/compose.h"
 #include "runtime/stages/denoise.h"
 #include "runtime/stages/direct.h"
 #include "runtime/stages/gather.h"
 #include "runtime/stages/glossy.h"
 #include "runtime/stages/guide.h"
+#include "runtime/stages/history.h"
 #include "runtime/stages/interpolate.h"
 #include "runtime/stages/primary.h"
 #include "runtime/stages/view_scale.h"
@@ -29,16 +32,17 @@ public:
     /// Records one frame: one sample a pixel, vec3[width * height]; of settings.term alone where that is not all, and
     /// the colours of settings.view where that is one, whatever the term.
     /// Photons, their trees and the cut are kept from one record() to the next where they would come out the same
-    /// (reuse.photons), irradiance samples where only the camera has moved (reuse.samples).
-    /// @param camera with first_sample: the frame's index in a standing picture
-    /// @param moved since the last record(), which this one follows; false: nothing is known of what was there before
-    const Buffer& record(Recorder& rec, const RayStage& rays, const gpu::CameraParams& camera, const Settings& settings,
-                         bool moved = false);
+    /// (reuse.photons).
+    const Buffer& record(Recorder& rec, const RayStage& rays, const FrameInfo& frame, const Settings& settings);
     /// What the photon map of the last frame holds, nothing where it wanted none; waits for the device.
     gpu::PhotonStore photonStore(const Device& device) const
     {
         return global_map_ ? device.download<gpu::PhotonStore>(photons_.store(), 1)[0] : gpu::PhotonStore{};
     }
+    /// gpu::Motion[width * height] of the last frame whose plan antialiases.
+    const Buffer& motions() const { return signals_->motions(); }
+    /// Share of the pixels that went on from a history in the last frame, none where it kept none; waits for the device.
+    std::optional<double> rememberedShare(const Device& device) const;
     /// Of the last frame; waits for the device.
     std::vector<gpu::Sample> irradianceSamples(const Device& device) const { return samples_.download(device); }
     uint32_t cutNodeCount(const Device& device) const { return cut_.nodeCount(device); }
@@ -47,30 +51,24 @@ public:
     void placeSamplesBy(uint32_t seed) { placement_seed_ = seed; }
 
 private:
-    struct Frame;
-    uint32_t chainDepth(const Settings& settings) const;
-    uint32_t denoisePasses(const Frame& frame) const;
-    /// Where a term's noisy light goes, from here to recordDenoise().
-    const Buffer& noisyLight(const Frame& frame) const;
-    void recordDenoise(const Frame& frame, bool glossy) const;
-    void recordDirect(const Frame& frame) const;
-    PhotonStage::Input photonInput(const Frame& frame) const;
-    PhotonStage::Output emitPhotons(const Frame& frame);
-    void rehearse(const Frame& frame);
-    bool isFar(const Frame& frame) const;
-    PhotonTreeStage::Output recordPhotons(const Frame& frame);
-    CutStage::Output recordCut(const Frame& frame, const PhotonTreeStage::Output& map);
-    SamplesStage::Input samplesInput(const Frame& frame, uint32_t age) const;
-    GatherStage::Input gatherInput(const Frame& frame) const;
-    bool gathersAtPixels(const Frame& frame) const;
-    void recordPixelGather(const Frame& frame, const PhotonTreeStage::Output& map, const CutStage::Output& cut);
-    bool reflectsByHarmonics(const Frame& frame) const;
-    InterpolateStage::Sorted recordGather(const Frame& frame, const PhotonTreeStage::Output& map,
-                                          const CutStage::Output& cut);
-    void recordIndirect(const Frame& frame, const InterpolateStage::Sorted& samples) const;
-    void recordGlossy(const Frame& frame, const CutStage::Output& cut, const InterpolateStage::Sorted* samples) const;
-    void recordCaustics(const Frame& frame);
-    void recordView(const Frame& frame) const;
+    struct Context; // what the stages of one frame share
+    FrameTraits traits() const;
+    void recordDirect(const Context& c) const;
+    PhotonStage::Input photonInput(const Context& c) const;
+    PhotonStage::Output emitPhotons(const Context& c);
+    void rehearse(const Context& c);
+    bool isFar(const Context& c) const;
+    PhotonTreeStage::Output recordMap(const Context& c);
+    CutStage::Output recordCut(const Context& c, const PhotonTreeStage::Output& map);
+    SamplesStage::Input samplesInput(const Context& c) const;
+    GatherStage::Input gatherInput(const Context& c) const;
+    InterpolateStage::Sorted recordGather(const Context& c, const PhotonTreeStage::Output& map, const CutStage::Output& cut);
+    void recordPixelGather(const Context& c, const PhotonTreeStage::Output& map, const CutStage::Output& cut);
+    void recordIndirect(const Context& c, const InterpolateStage::Sorted& samples) const;
+    void recordGlossy(const Context& c, const CutStage::Output& cut, const InterpolateStage::Sorted* samples) const;
+    void recordCaustics(const Context& c);
+    void recordSignals(const Context& c);
+    void recordView(const Context& c, const Buffer& picture) const;
 
     struct MapOrigin // what a photon map was made from
     {
@@ -78,11 +76,12 @@ private:
         PhotonStage::Input in;
         bool operator==(const MapOrigin&) const = default;
     };
-    bool isThere(const Frame& frame, std::optional<MapOrigin>& made, const PhotonStage::Input& in) const;
+    bool isThere(const Context& c, std::optional<MapOrigin>& made, const PhotonStage::Input& in) const;
 
     const SceneGpu& scene_;
     uint32_t width_, height_;
-    bool has_specular_, reflects_roughly_, has_caustic_targets_, has_mirrors_;
+    bool has_specular_, has_caustic_targets_, has_mirrors_;
+    LightBuffers light_;
     PrimaryStage primary_;
     ViewScaleStage view_scale_;
     DirectStage direct_;
@@ -96,21 +95,13 @@ private:
     InterpolateStage interpolate_;
     GlossyStage glossy_;
     CausticsStage caustics_;
-    std::optional<DenoiseStage> denoise_; // where it is asked for
+    std::optional<SignalsStage> signals_; // where filters or histories are asked for
+    std::optional<HistoryStage> history_;
+    std::optional<DenoiseStage> denoise_;
+    ComposeStage compose_;
     ViewsStage views_;
     gpu::vec3 map_camera_{};                            // where the camera was when the global map was made
     std::optional<MapOrigin> global_map_, caustic_map_; // that lie in the stages' buffers
     std::optional<CutStage::Input> made_cut_;           // over that global map
-
-    struct SamplesOrigin // what samples were gathered under
-    {
-        uint64_t lights;
-        uint32_t seed;
-        Settings settings;
-        bool operator==(const SamplesOrigin&) const = default;
-    };
-    uint32_t sampleAge(const Frame& frame);
-    std::optional<SamplesOrigin> last_samples_; // of the last frame, where it was the first of its picture
-    uint32_t sample_age_ = 0;                   // frames since all samples were new
-    std::optional<uint32_t> placement_seed_;    // of placeSamplesBy()
+    std::optional<uint32_t> placement_seed_;            // of placeSamplesBy()
 };

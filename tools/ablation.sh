@@ -88,7 +88,7 @@ done
 
 echo
 echo "temporal reuse: the same, the frame as the camera comes to rest there after $travel frames of swaying"
-for row in "" reuse.samples=off reuse.photons=off "reuse.photons=off reuse.samples=off"; do
+for row in "" reuse.photons=off; do
     print_row "$row" --travel "$travel"
 done
 

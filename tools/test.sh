@@ -8,13 +8,17 @@ tools/setup.sh
 tools/build.sh release
 tools/build.sh asan fuzz_exr fuzz_gltf fuzz_hdr fuzz_ktx2 fuzz_package fuzz_seeds fuzz_settings
 
-result=0
+rm -f build/{asan,release}/Testing/Temporary/LastTestsFailed.log
+failed=()
 echo "test: fuzzing each reader for a minute"
-ctest --preset asan --label-regex fuzz --parallel "$(nproc)" || result=1
+ctest --preset asan --label-regex fuzz --parallel "$(nproc)" || failed+=("fuzzing (build/asan/Testing/Temporary/LastTest.log)")
 # Tests of the GPU take turns (RESOURCE_LOCK gpu): a software device uses every core on its own.
 echo "test: running all tests"
-ctest --preset release --parallel "$(nproc)" || result=1
-if ((result != 0)); then
-    echo "test: failed" >&2
+ctest --preset release --parallel "$(nproc)" || failed+=("tests (build/release/Testing/Temporary/LastTest.log)")
+if ((${#failed[@]} > 0)); then
+    printf 'test: failed: %s\n' "${failed[@]}" >&2
+    for log in build/{asan,release}/Testing/Temporary/LastTestsFailed.log; do
+        [[ ! -s $log ]] || sed 's/^/test: failed: /' "$log" >&2
+    done
+    exit 1
 fi
-exit $result

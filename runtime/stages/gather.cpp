@@ -7,7 +7,7 @@ GatherStage::GatherStage(const Device& device, const SceneGpu& scene, uint32_t m
       generate_pixels_(device.kernel("gather/generate_pixels", scene.constants())), link_(device.kernel("gather/link", scene.constants())),
       link_knn_(device.kernel("gather/link_knn", scene.constants())), sum_(device.kernel("gather/sum")),
       add_(device.kernel("gather/add")),
-      carry_(device.kernel("gather/carry")), project_(device.kernel("gather/project", scene.constants())),
+      project_(device.kernel("gather/project", scene.constants())),
       queue_(device, "gather.queue", max_samples * max_rays_per_sample),
       next_queue_(device, "gather.next_queue", max_samples * max_rays_per_sample),
       hits_(device.texelArray<gpu::Hit>("gather.hits", uint64_t(max_samples) * max_rays_per_sample)),
@@ -16,9 +16,7 @@ GatherStage::GatherStage(const Device& device, const SceneGpu& scene, uint32_t m
       directions_(device.array<uint32_t>("gather.directions", uint64_t(max_samples) * max_rays_per_sample)),
       no_legs_(device.array<gpu::Leg>("gather.no_legs", gpu::kLegCount)),
       harmonics_(
-          device.texelArray<gpu::SampleHarmonics>("gather.harmonics", scene.reflectsRoughly() ? max_samples : 1)),
-      old_harmonics_(
-          device.array<gpu::SampleHarmonics>("gather.old_harmonics", scene.reflectsRoughly() ? max_samples : 1))
+          device.texelArray<gpu::SampleHarmonics>("gather.harmonics", scene.reflectsRoughly() ? max_samples : 1))
 {
 }
 
@@ -31,7 +29,6 @@ void GatherStage::look(Recorder& rec, const RayStage& rays, const SamplesStage::
              {"Queue", queue_.size},
              {"Rays", queue_.rays},
              {"States", states_},
-             {"KeptSize", samples.kept},
              {"Legs", legs ? legs->legs() : no_legs_},
              {"Directions", directions_}});
     rays.closest(rec, queue_, hits_, traceSeed(params.seed, 0, 0));
@@ -55,21 +52,13 @@ void GatherStage::record(Recorder& rec, const RayStage& rays, const SamplesStage
     rec.run(sum_, max_samples_ * gpu::kRaysGroupSize, params,
             {{"Size", samples.size},
              {"GatheredBlock", gathered_},
-             {"Samples", samples.samples},
-             {"KeptSize", samples.kept}});
+             {"Samples", samples.samples}});
     if (!in.by_direction)
         return;
-    rec.copy(harmonics_, old_harmonics_, harmonics_.size());
-    rec.runIndirect(carry_, samples.kept, NoParams{},
-                    {{"KeptSize", samples.kept},
-                     {"Kept", samples.kept_from},
-                     {"OldHarmonics", old_harmonics_},
-                     {"Harmonics", harmonics_}});
     rec.run(project_, max_samples_ * gpu::kRaysGroupSize, params,
             {{"Size", samples.size},
              {"GatheredBlock", gathered_},
              {"Harmonics", harmonics_},
-             {"KeptSize", samples.kept},
              {"Directions", directions_}});
 }
 

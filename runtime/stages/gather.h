@@ -29,7 +29,7 @@ public:
     /// Only tells `guide` where the samples' rays end.
     void look(Recorder& rec, const RayStage& rays, const SamplesStage::Output& samples, const Input& in,
               GuideStage& guide) const;
-    /// Sets irradiance and harmonic of samples.samples, except of those that are kept. @param guide if not null is told
+    /// Sets irradiance and harmonic of samples.samples. @param guide if not null is told
     /// where rays end
     void record(Recorder& rec, const RayStage& rays, const SamplesStage::Output& samples,
                 const PhotonTreeStage::Output& map, const CutStage::Output& cut, const Input& in,
@@ -67,7 +67,7 @@ private:
 
     uint32_t max_samples_, max_rays_;
     bool has_specular_;
-    Kernel generate_, generate_pixels_, link_, link_knn_, sum_, add_, carry_, project_;
+    Kernel generate_, generate_pixels_, link_, link_knn_, sum_, add_, project_;
     RayQueue queue_, next_queue_;
-    Buffer hits_, states_, gathered_, directions_, no_legs_, harmonics_, old_harmonics_;
+    Buffer hits_, states_, gathered_, directions_, no_legs_, harmonics_;
 };

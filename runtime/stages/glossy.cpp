@@ -46,7 +46,7 @@ void GlossyStage::record(Recorder& rec, const RayStage& rays, const CutStage::Ou
                          {"States", states_},
                          {"NextQueue", next->size},
                          {"NextRays", next->rays},
-                         {"Radiance", in.noisy},
+                         {"Radiance", in.radiance},
                          {"CutSize", cut.size},
                          {"TreeNodes", cut.tree.nodes()},
                          {"CutNodes", cut.nodes},

@@ -14,22 +14,20 @@ public:
     struct Input
     {
         const Buffer& points;   // gpu::ShadingPoint[point_count]
-        const Buffer& radiance; // vec3[point_count], grows by the glossy light from harmonics
-        const Buffer& noisy;    // likewise, by that from rays; may be `radiance`
+        const Buffer& radiance; // vec3[point_count], grows by the glossy light
         uint32_t point_count;
         uint32_t width; // of the picture, pixels
         uint32_t first_sample;
         uint32_t specular_depth; // most delta events of a ray
         uint32_t seed;
         float sure_reflectance; // what reflects this much sends a ray from every pixel, what reflects less a part of them
-        bool shared = false; // whether shares() says what part of the light is there already
+        bool shared = false; // whether recordHarmonics() has said what part of the light is there already
     };
     void record(Recorder& rec, const RayStage& rays, const CutStage::Output& cut, const Input& in) const;
 
     /// Adds what rough lobes reflect by the samples' harmonics; record() with in.shared then adds the rest.
     /// @param harmonics gpu::SampleHarmonics, by sample as gathered
     void recordHarmonics(Recorder& rec, const InterpolateStage::Sorted& samples, const Buffer& harmonics, const Input& in) const;
-    const Buffer& shares() const { return shares_; } // float[max_pixels]: which part of the light is from harmonics
 
 private:
     Kernel generate_, link_, harmonics_;

@@ -10,12 +10,16 @@ PrimaryStage::PrimaryStage(const Device& device, const SceneGpu& scene, uint32_t
       next_queue_(device, "primary.next_queue", max_pixels),
       hits_(device.texelArray<gpu::Hit>("primary.hits", max_pixels)),
       points_(device.array<gpu::ShadingPoint>("primary.points", max_pixels)),
-      diffuse_points_(device.texelArray<gpu::DiffusePoint>("primary.diffuse_points", max_pixels)),
-      radiance_(device.array<gpu::vec3>("primary.radiance", max_pixels))
+      diffuse_points_(device.texelArray<gpu::DiffusePoint>("primary.diffuse_points", max_pixels))
 {
 }
 
-PrimaryStage::Output PrimaryStage::record(Recorder& rec, const RayStage& rays, const Input& in) const
+float PrimaryStage::textureWidth(const gpu::CameraParams& camera)
+{
+    return kTextureBlur * pixelSide(camera) / float(camera.first_sample + 1);
+}
+
+SurfaceBuffers PrimaryStage::record(Recorder& rec, const RayStage& rays, const Input& in) const
 {
     const auto scope = rec.scope("primary");
     const uint32_t pixel_count = in.camera.width * in.camera.height;
@@ -24,8 +28,7 @@ PrimaryStage::Output PrimaryStage::record(Recorder& rec, const RayStage& rays, c
 
     const RayQueue* queue = &queue_;
     const RayQueue* next = &next_queue_;
-    // The frames of a standing picture share out its pixels: each shows its own part, so that textures come out sharp.
-    const float width = kTextureBlur * pixelSide(in.camera) / float(in.camera.first_sample + 1);
+    const float width = textureWidth(in.camera);
     const uint32_t depth_limit = has_specular_ ? in.specular_depth : 0;
     for (uint32_t depth = 0; depth <= depth_limit; ++depth)
     {
@@ -40,10 +43,10 @@ PrimaryStage::Output PrimaryStage::record(Recorder& rec, const RayStage& rays, c
         rays.closest(rec, *queue, hits_, traceSeed(in.camera.seed, in.camera.first_sample, depth));
         rays.reset(rec, next->size);
         rec.runIndirect(chain_, queue->size, params,
-                        {{"Queue", queue->size}, {"Rays", queue->rays}, {"Hits", hits_}, {"Points", points_}, {"Radiance", radiance_},
+                        {{"Queue", queue->size}, {"Rays", queue->rays}, {"Hits", hits_}, {"Points", points_}, {"Radiance", in.emission},
                          {"NextQueue", next->size}, {"NextRays", next->rays}, {"DiffusePoints", diffuse_points_}});
         rays.close(rec, next->size);
         std::swap(queue, next);
     }
-    return {.points = points_, .diffuse_points = diffuse_points_, .radiance = radiance_};
+    return {.points = points_, .diffuse_points = diffuse_points_};
 }

@@ -1,5 +1,6 @@
 // Camera rays and their specular chains: one shading point a pixel.
 #pragma once
+#include "runtime/frame/surface_buffers.h"
 #include "runtime/stages/rays.h"
 #include "shaders/primary/primary.h"
 
@@ -9,24 +10,23 @@ public:
     /// Of a pixel: what textures are blurred over, a little less than one sample a pixel can show.
     static constexpr float kTextureBlur = 0.7f;
 
+    /// Of a ray at distance 1, metres (perspective), or of every ray (orthographic). The frames of a standing picture share out
+    /// its pixels: each shows its own part, so that textures come out sharp.
+    static float textureWidth(const gpu::CameraParams& camera);
+
     PrimaryStage(const Device& device, const SceneGpu& scene, uint32_t max_pixels);
 
     struct Input
     {
         gpu::CameraParams camera; // with sample_count 1
         uint32_t specular_depth;  // most specular events in a chain
+        const Buffer& emission;   // vec3[width * height] becomes what the chains themselves find: emitters, sky
     };
-    struct Output
-    {
-        const Buffer& points;   // gpu::ShadingPoint[width * height]
-        const Buffer& diffuse_points; // gpu::DiffusePoint[width * height], with a texel view
-        const Buffer& radiance; // vec3[width * height]: what the chains themselves found: emitters, sky
-    };
-    Output record(Recorder& rec, const RayStage& rays, const Input& in) const;
+    SurfaceBuffers record(Recorder& rec, const RayStage& rays, const Input& in) const;
 
 private:
     bool has_specular_;
     Kernel generate_, chain_;
     RayQueue queue_, next_queue_;
-    Buffer hits_, points_, diffuse_points_, radiance_;
+    Buffer hits_, points_, diffuse_points_;
 };

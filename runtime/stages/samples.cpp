@@ -43,11 +43,8 @@ SamplesStage::SamplesStage(const Device& device, uint32_t width, uint32_t height
       variation_(device.kernel("samples/variation")), budget_(device.kernel("samples/budget")),
       seed_(device.kernel("samples/seed")), assign_(device.kernel("samples/assign")),
       update_(device.kernel("samples/update")), snap_(device.kernel("samples/snap")),
-      measure_(device.kernel("samples/measure")), occupied_kernel_(device.kernel("samples/occupied")),
-      place_(device.kernel("samples/place")), count_(device.kernel("samples/count")),
-      recall_(device.kernel("samples/recall")), classify_(device.kernel("samples/classify")),
-      retain_(device.kernel("samples/retain")), mask_(device.kernel("samples/mask")),
-      keep_(device.kernel("samples/keep")), adopt_(device.kernel("samples/adopt")),
+      occupied_kernel_(device.kernel("samples/occupied")),
+      place_(device.kernel("samples/place")),
       seed_compaction_(device, "samples.seed_compaction", point_count_),
       sample_compaction_(device, "samples.compaction", max_samples), tree_(device, "samples.tree", max_samples),
       point_size_(device.array<gpu::QueueSize>("samples.point_size", 1)),
@@ -63,107 +60,47 @@ SamplesStage::SamplesStage(const Device& device, uint32_t width, uint32_t height
       owners_(device.array<gpu::uvec2>("samples.owners", point_count_)),
       occupied_flags_(device.array<uint32_t>("samples.occupied_flags", max_samples)),
       occupied_(device.array<uint32_t>("samples.occupied", max_samples)),
-      new_size_(device.array<gpu::QueueSize>("samples.new_size", 1)),
       size_(device.array<gpu::QueueSize>("samples.size", 1)),
       samples_(device.array<gpu::Sample>("samples.samples", max_samples)),
-      spheres_(device.array<gpu::vec4>("samples.spheres", max_samples)),
-      tenures_(device.array<gpu::SampleTenure>("samples.tenures", max_samples)),
-      old_size_(device.array<gpu::QueueSize>("samples.old_size", 1)),
-      old_samples_(device.array<gpu::Sample>("samples.old", max_samples)),
-      old_tenures_(device.array<gpu::SampleTenure>("samples.old_tenures", max_samples)),
-      quota_(device.array<gpu::SampleQuota>("samples.quota", 1)),
-      claims_(device.array<gpu::uvec2>("samples.claims", point_count_)),
-      rest_(device.array<gpu::SamplePoint>("samples.rest", point_count_)),
-      kept_(device.array<uint32_t>("samples.kept", max_samples)),
-      kept_size_(device.array<gpu::QueueSize>("samples.kept_size", 1))
+      spheres_(device.array<gpu::vec4>("samples.spheres", max_samples))
 {
 }
 
-/// Of the last frame's samples, those that are kept come first in samples_; rest_ holds the points that new ones are
-/// for.
-void SamplesStage::recordKept(Recorder& rec, const gpu::ClusterParams& params) const
-{
-    rec.copy(size_, old_size_, sizeof(gpu::QueueSize));
-    rec.runIndirect(recall_, old_size_, NoParams{},
-                    {{"Size", old_size_},
-                     {"Samples", samples_},
-                     {"Tenures", tenures_},
-                     {"OldSamples", old_samples_},
-                     {"OldTenures", old_tenures_},
-                     {"Spheres", cluster_spheres_},
-                     {"Sums", sums_}});
-    tree_.record(rec, cluster_spheres_, old_size_);
-    rec.clear(quota_);
-    rec.run(classify_, point_count_, params,
-            {{"Size", old_size_},
-             {"Points", points_},
-             {"OldSamples", old_samples_},
-             {"OldTenures", old_tenures_},
-             {"TreeNodes", tree_.nodes()},
-             {"Order", tree_.order()},
-             {"Claims", claims_},
-             {"Sums", sums_},
-             {"Quota", quota_}});
-    rec.run(retain_, 1, params,
-            {{"Size", old_size_},
-             {"Sums", sums_},
-             {"OldTenures", old_tenures_},
-             {"Quota", quota_},
-             {"Flags", occupied_flags_}});
-    rec.run(mask_, point_count_, params,
-            {{"Points", points_}, {"Flags", occupied_flags_}, {"Claims", claims_}, {"Sums", sums_}, {"Rest", rest_}});
-    sample_compaction_.record(rec, occupied_flags_, kept_, kept_size_, old_size_);
-    rec.runIndirect(keep_, kept_size_, NoParams{},
-                    {{"KeptSize", kept_size_},
-                     {"Kept", kept_},
-                     {"Sums", sums_},
-                     {"Points", points_},
-                     {"OldSamples", old_samples_},
-                     {"OldTenures", old_tenures_},
-                     {"Samples", samples_},
-                     {"Spheres", spheres_},
-                     {"Tenures", tenures_}});
-}
-
-/// Algorithm 1: as many clusters as the budget has left, each at one of `points`.
-void SamplesStage::recordSeeds(Recorder& rec, const RayStage& rays, const Input& in, const Buffer& points) const
+/// Algorithm 1: as many clusters as the budget has, each at a point.
+void SamplesStage::recordSeeds(Recorder& rec, const RayStage& rays, const Input& in) const
 {
     // Fixed point that cannot overflow in any sum that is read, those of the root's children and below.
     gpu::SeedParams seeding{.level = 0,
                             .levels = levels_,
                             .budget = in.budget,
-                            .seed = in.frameSeed(),
+                            .seed = in.seed,
                             .alpha = in.alpha,
                             .variation_scale = 4294967040.0f / (gpu::kMostVariation * float(grid_count_ / 4)),
                             .uniform_ = in.mode == SamplesMode::kUniform};
     const auto levelThreads = [&](uint32_t level) { return 1u << (2 * (levels_ - level)); };
     for (seeding.level = 1; seeding.level <= levels_; ++seeding.level)
-        rec.run(mean_, levelThreads(seeding.level), seeding, {{"Points", points}, {"Nodes", quad_nodes_}});
-    rec.run(variation_, point_count_, seeding, {{"Points", points}, {"Nodes", quad_nodes_}});
+        rec.run(mean_, levelThreads(seeding.level), seeding, {{"Points", points_}, {"Nodes", quad_nodes_}});
+    rec.run(variation_, point_count_, seeding, {{"Points", points_}, {"Nodes", quad_nodes_}});
     rec.clear(seed_flags_);
     for (seeding.level = levels_; seeding.level >= 1; --seeding.level)
         rec.run(budget_, levelThreads(seeding.level), seeding,
-                {{"Points", points},
-                 {"Nodes", quad_nodes_},
-                 {"Budgets", budgets_},
-                 {"Seeds", seed_flags_},
-                 {"KeptSize", kept_size_}});
+                {{"Points", points_}, {"Nodes", quad_nodes_}, {"Budgets", budgets_}, {"Seeds", seed_flags_}});
     rays.resize(rec, point_size_, point_count_);
     seed_compaction_.record(rec, seed_flags_, seeds_, cluster_size_, point_size_);
     rec.runIndirect(seed_, cluster_size_, NoParams{},
                     {{"Size", cluster_size_},
                      {"Seeds", seeds_},
-                     {"Points", points},
+                     {"Points", points_},
                      {"Clusters", clusters_},
                      {"Spheres", cluster_spheres_},
                      {"Sums", sums_}});
 }
 
-void SamplesStage::assign(Recorder& rec, const gpu::ClusterParams& params, const Buffer& points) const
+void SamplesStage::assign(Recorder& rec, const gpu::ClusterParams& params) const
 {
     rec.run(assign_, point_count_, params,
             {{"Size", cluster_size_},
-             {"Points", points},
+             {"Points", points_},
              {"Clusters", clusters_},
              {"TreeNodes", tree_.nodes()},
              {"Order", tree_.order()},
@@ -172,31 +109,19 @@ void SamplesStage::assign(Recorder& rec, const gpu::ClusterParams& params, const
              {"Seeds", seeds_}});
 }
 
-/// Algorithm 2 over `points`; at its end every point of the picture has an owner.
-void SamplesStage::recordClusters(Recorder& rec, const Input& in, const gpu::ClusterParams& params,
-                                  const Buffer& points) const
+/// Algorithm 2; at its end every point of the picture has an owner.
+void SamplesStage::recordClusters(Recorder& rec, const Input& in, const gpu::ClusterParams& params) const
 {
     tree_.record(rec, cluster_spheres_, cluster_size_);
     for (uint32_t i = 0; in.mode == SamplesMode::kKmeans && i < in.iterations; ++i)
     {
-        assign(rec, params, points);
+        assign(rec, params);
         rec.runIndirect(
             update_, cluster_size_, params,
             {{"Size", cluster_size_}, {"Sums", sums_}, {"Clusters", clusters_}, {"Spheres", cluster_spheres_}});
         tree_.refit(rec, cluster_spheres_, cluster_size_);
     }
-    if (in.age == 0)
-        return assign(rec, params, points);
-    rec.run(adopt_, point_count_, params,
-            {{"Size", cluster_size_},
-             {"Points", points_},
-             {"Clusters", clusters_},
-             {"TreeNodes", tree_.nodes()},
-             {"Order", tree_.order()},
-             {"Sums", sums_},
-             {"Owners", owners_},
-             {"Seeds", seeds_},
-             {"Claims", claims_}});
+    assign(rec, params);
 }
 
 SamplesStage::Output SamplesStage::record(Recorder& rec, const RayStage& rays, const Input& in) const
@@ -204,35 +129,23 @@ SamplesStage::Output SamplesStage::record(Recorder& rec, const RayStage& rays, c
     rec.run(points_kernel_, point_count_,
             gpu::PointParams{.width = width_, .height = height_, .stride = stride_, .seed = in.seed},
             {{"DiffusePoints", in.diffuse_points}, {"Points", points_}});
-    // Those that are all new at once go one by one.
     const gpu::ClusterParams params{.point_count = point_count_,
                                     .alpha = in.alpha,
                                     .fixed_scale = 4294967040.0f / float(grid_count_),
-                                    .reach = in.reach,
-                                    .budget = in.budget,
-                                    .seed = in.frameSeed(),
-                                    .least_frames = in.age > 0 ? gpu::kSampleFrames / 2 : 1};
-    rec.clear(kept_size_);
-    if (in.age > 0)
-        recordKept(rec, params);
-    const Buffer& points = in.age > 0 ? rest_ : points_;
-    recordSeeds(rec, rays, in, points);
-    recordClusters(rec, in, params, points);
+                                    .reach = in.reach};
+    recordSeeds(rec, rays, in);
+    recordClusters(rec, in, params);
     rec.run(snap_, point_count_, params, {{"Owners", owners_}, {"Sums", sums_}});
-    rec.run(measure_, point_count_, params, {{"Owners", owners_}, {"Points", points_}, {"Sums", sums_}});
     rec.runIndirect(occupied_kernel_, cluster_size_, NoParams{},
                     {{"Size", cluster_size_}, {"Sums", sums_}, {"Flags", occupied_flags_}});
-    sample_compaction_.record(rec, occupied_flags_, occupied_, new_size_, cluster_size_);
-    rec.runIndirect(place_, new_size_, params,
-                    {{"NewSize", new_size_},
+    sample_compaction_.record(rec, occupied_flags_, occupied_, size_, cluster_size_);
+    rec.runIndirect(place_, size_, params,
+                    {{"Size", size_},
                      {"Occupied", occupied_},
                      {"Sums", sums_},
                      {"Points", points_},
                      {"Samples", samples_},
                      {"Spheres", spheres_},
-                     {"Tenures", tenures_},
-                     {"KeptSize", kept_size_},
                      {"Clusters", clusters_}});
-    rec.run(count_, 1, NoParams{}, {{"KeptSize", kept_size_}, {"NewSize", new_size_}, {"Size", size_}});
     return output();
 }

@@ -19,24 +19,18 @@ public:
         float alpha;         // of Eq. 2, per view distance
         float reach;         // of a sample, in mean distances of its cluster's points to their centre
         uint32_t seed;
-        /// Frames since all samples were new. Above 0, those of the last record() are kept that still own a point, with
-        /// their irradiance; others take the rest of the budget. Lights, scene and settings must be the same as then.
-        uint32_t age = 0;
-        uint32_t frameSeed() const { return age > 0 ? traceSeed(seed, age, 0) : seed; } // another in every frame
     };
     struct Output
     {
         const Buffer& size;      // gpu::QueueSize: samples
-        const Buffer& samples;   // gpu::Sample[size.count], irradiance still to be gathered but of those that are kept
+        const Buffer& samples;   // gpu::Sample[size.count], irradiance still to be gathered
         const Buffer& spheres;   // vec4[size.count]: their positions and supports
-        const Buffer& kept;      // gpu::QueueSize: samples that are kept, the first ones
-        const Buffer& kept_from; // uint[kept.count]: their indices in the last frame
     };
     Output record(Recorder& rec, const RayStage& rays, const Input& in) const;
     /// What the last record() left.
     Output output() const
     {
-        return {.size = size_, .samples = samples_, .spheres = spheres_, .kept = kept_size_, .kept_from = kept_};
+        return {.size = size_, .samples = samples_, .spheres = spheres_};
     }
 
     struct Quadtree // how the samples came about
@@ -44,8 +38,7 @@ public:
         uint32_t stride;       // pixels between neighbouring points, each way
         uint32_t levels;       // points are level 0
         const Buffer& budgets; // uint[], by node as samples/quadtree.glsl orders them: samples that it was to get
-        const Buffer& owners; // uvec2[], by point in Z-order: its cluster, or kKeptBit | the kept sample's index in the
-                              // last frame, or kNone; bits of its eps
+        const Buffer& owners;  // uvec2[], by point in Z-order: its cluster or kNone; bits of its eps
     };
     Quadtree quadtree() const { return {.stride = stride_, .levels = levels_, .budgets = budgets_, .owners = owners_}; }
 
@@ -55,28 +48,23 @@ public:
         return device.download<gpu::Sample>(samples_, device.download<gpu::QueueSize>(size_, 1)[0].count);
     }
 
-    const Buffer& tenures() const { return tenures_; } // gpu::SampleTenure[size.count] of the last record()
-
     /// Pixels between neighbouring points of the quadtree, each way.
     uint32_t stride() const { return stride_; }
 
 private:
-    void recordKept(Recorder& rec, const gpu::ClusterParams& params) const;
-    void recordSeeds(Recorder& rec, const RayStage& rays, const Input& in, const Buffer& points) const;
-    void recordClusters(Recorder& rec, const Input& in, const gpu::ClusterParams& params, const Buffer& points) const;
-    void assign(Recorder& rec, const gpu::ClusterParams& params, const Buffer& points) const;
+    void recordSeeds(Recorder& rec, const RayStage& rays, const Input& in) const;
+    void recordClusters(Recorder& rec, const Input& in, const gpu::ClusterParams& params) const;
+    void assign(Recorder& rec, const gpu::ClusterParams& params) const;
 
     uint32_t width_, height_;
     uint32_t stride_, levels_;
     uint32_t grid_count_,
         point_count_; // points of the quadtree's square; the first of them that hold all of the picture
-    Kernel points_kernel_, mean_, variation_, budget_, seed_, assign_, update_, snap_, measure_, occupied_kernel_,
-        place_, count_;
-    Kernel recall_, classify_, retain_, mask_, keep_, adopt_; // where samples are kept
+    Kernel points_kernel_, mean_, variation_, budget_, seed_, assign_, update_, snap_, occupied_kernel_,
+        place_;
     Compaction seed_compaction_, sample_compaction_;
     Tree tree_;
     Buffer point_size_, points_, quad_nodes_, budgets_, seed_flags_, seeds_;
     Buffer cluster_size_, clusters_, cluster_spheres_, sums_, owners_, occupied_flags_, occupied_;
-    Buffer new_size_, size_, samples_, spheres_, tenures_;
-    Buffer old_size_, old_samples_, old_tenures_, quota_, claims_, rest_, kept_, kept_size_;
+    Buffer size_, samples_, spheres_;
 };

@@ -5,7 +5,7 @@
 #include "shaders/lib/aim.glsl"
 #include "shaders/lib/gather_ray.glsl"
 
-// Stratified rays from every new sample, by the cosine and to where light comes from. One group per sample.
+// Stratified rays from every sample, by the cosine and to where light comes from. One group per sample.
 
 layout(local_size_x = kRaysGroupSize) in;
 layout(push_constant, scalar) uniform Params { GatherParams params; };
@@ -15,7 +15,6 @@ layout(set = 1, binding = 1, scalar) readonly buffer Samples { Sample samples[];
 layout(set = 1, binding = 2, scalar) buffer Queue { QueueSize queue; };
 layout(set = 1, binding = 3, scalar) writeonly buffer Rays { Ray rays[]; };
 layout(set = 1, binding = 5, scalar) writeonly buffer States { GatherState states[]; };
-layout(set = 1, binding = 4, scalar) readonly buffer KeptSize { QueueSize kept_size; }; // the first samples, which have all they need
 layout(set = 1, binding = 6, scalar) readonly buffer Legs { Leg legs[]; };
 layout(set = 1, binding = 7, scalar) writeonly buffer Directions { uint directions[]; }; // octahedral, by ray
 
@@ -51,9 +50,9 @@ void countLegs(vec3 x, vec3 normal, mat3 frame, uint thread)
 
 void main()
 {
-    uint new_sample = gl_WorkGroupID.x, sample_ = kept_size.count + new_sample, thread = gl_LocalInvocationID.x;
+    uint sample_ = gl_WorkGroupID.x, thread = gl_LocalInvocationID.x;
     if (gl_GlobalInvocationID.x == 0u)
-        queue = queueSize((size.count - kept_size.count) * params.ray_count);
+        queue = queueSize(size.count * params.ray_count);
     if (sample_ >= size.count)
         return; // all of the group
     vec3 position = samples[sample_].position, normal = unpackNormal(samples[sample_].normal);
@@ -63,9 +62,9 @@ void main()
     for (uint ray = thread; ray < params.ray_count; ray += kRaysGroupSize)
     {
         float weight;
-        vec2 pair = aimPair(gatherPair(new_sample, ray, params.ray_count, params.seed), weight);
+        vec2 pair = aimPair(gatherPair(sample_, ray, params.ray_count, params.seed), weight);
         vec3 direction = frame * cosineDirection(pair);
-        uint i = new_sample * params.ray_count + ray;
+        uint i = sample_ * params.ray_count + ray;
         rays[i] = Ray(offsetOrigin(position, normal), kInfinity, direction, i);
         states[i] = GatherState(vec3(weight), kNone, 0u);
         directions[i] = packNormal(direction);

@@ -4,7 +4,7 @@
 #include "shaders/gather/gather.h"
 #include "shaders/lib/harmonics.glsl"
 
-// The light of every new sample by direction. One group per sample, so that the order of the sum is fixed: the group takes its
+// The light of every sample by direction. One group per sample, so that the order of the sum is fixed: the group takes its
 // threads' rays together, then each of 48 threads sums one coefficient of one channel.
 
 layout(local_size_x = kRaysGroupSize) in;
@@ -13,7 +13,6 @@ layout(push_constant, scalar) uniform Params { GatherParams params; };
 layout(set = 1, binding = 0, scalar) readonly buffer Size { QueueSize size; };
 layout(set = 1, binding = 1, scalar) readonly buffer GatheredBlock { Gathered gathered[]; };
 layout(set = 1, binding = 2, scalar) writeonly buffer Harmonics { SampleHarmonics harmonics[]; };
-layout(set = 1, binding = 3, scalar) readonly buffer KeptSize { QueueSize kept_size; }; // the first samples, which have theirs
 layout(set = 1, binding = 4, scalar) readonly buffer Directions { uint directions[]; }; // octahedral, by ray
 
 shared float basis[kRaysGroupSize][kHarmonicsCount]; // the last is 1: the sum that the others are shares of
@@ -22,12 +21,12 @@ shared float sums[3u * kHarmonicsCount];
 
 void main()
 {
-    uint new_sample = gl_WorkGroupID.x, sample_ = kept_size.count + new_sample, t = gl_LocalInvocationID.x;
+    uint sample_ = gl_WorkGroupID.x, t = gl_LocalInvocationID.x;
     bool exists = sample_ < size.count;
     float sum = 0.0;
     for (uint first = 0u; first < params.ray_count; first += kRaysGroupSize)
     {
-        uint ray = first + t, i = new_sample * params.ray_count + ray;
+        uint ray = first + t, i = sample_ * params.ray_count + ray;
         bool looks = exists && ray < params.ray_count;
         vec4 b[4] = harmonicBasis(looks ? unpackNormal(directions[i]) : vec3(0.0, 0.0, 1.0));
         b[3].w = 1.0;

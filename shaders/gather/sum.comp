@@ -4,7 +4,7 @@
 #include "shaders/gather/gather.h"
 #include "shaders/lib/math.glsl"
 
-// Irradiance and harmonic mean distance of every new sample from its rays. One group per sample, so that the order of the
+// Irradiance and harmonic mean distance of every sample from its rays. One group per sample, so that the order of the
 // sum is fixed.
 
 layout(local_size_x = kRaysGroupSize) in;
@@ -13,17 +13,16 @@ layout(push_constant, scalar) uniform Params { GatherParams params; };
 layout(set = 1, binding = 0, scalar) readonly buffer Size { QueueSize size; };
 layout(set = 1, binding = 1, scalar) readonly buffer GatheredBlock { Gathered gathered[]; };
 layout(set = 1, binding = 2, scalar) buffer Samples { Sample samples[]; };
-layout(set = 1, binding = 3, scalar) readonly buffer KeptSize { QueueSize kept_size; }; // the first samples, which have all they need
 
 shared vec4 sums[kRaysGroupSize];
 
 void main()
 {
-    uint new_sample = gl_WorkGroupID.x, sample_ = kept_size.count + new_sample, t = gl_LocalInvocationID.x;
+    uint sample_ = gl_WorkGroupID.x, t = gl_LocalInvocationID.x;
     bool exists = sample_ < size.count;
     vec4 sum = vec4(0.0);
     for (uint i = t; exists && i < params.ray_count; i += kRaysGroupSize)
-        sum += vec4(gathered[new_sample * params.ray_count + i].radiance, gathered[new_sample * params.ray_count + i].nearness);
+        sum += vec4(gathered[sample_ * params.ray_count + i].radiance, gathered[sample_ * params.ray_count + i].nearness);
     sums[t] = sum;
     for (uint half_ = kRaysGroupSize / 2u; half_ > 0u; half_ /= 2u)
     {

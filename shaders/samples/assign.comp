@@ -4,6 +4,7 @@
 #include "shaders/lib/math.glsl"
 #include "shaders/lib/scene.glsl"
 #include "shaders/lib/variation.glsl"
+#include "shaders/samples/cluster_cube.glsl"
 #include "shaders/samples/samples.h"
 
 // Each point's nearest cluster by geometric variation: a range search, since eps >= alpha x distance, then sums of the
@@ -24,5 +25,59 @@ layout(set = 1, binding = 7, scalar) readonly buffer Seeds { uint seeds[]; };   
 
 float alpha() { return params.alpha / view_scale.distance; } // of Eq. 2, per metre
 
-uvec2 claimOf(uint point) { return uvec2(kNone, 0u); }
-#include "shaders/samples/assign_body.glsl"
+/// The cluster whose seed is next to the point in Z-order: near enough that the search around it is short.
+uint neighbourInOrder(uint point)
+{
+    uint low = 0u, high = size.count; // seeds[low] <= point < seeds[high]
+    while (high - low > 1u)
+    {
+        uint middle = (low + high) / 2u;
+        if (seeds[middle] <= point)
+            low = middle;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+void main()
+{
+    uint p = gl_GlobalInvocationID.x;
+    if (p >= params.point_count)
+        return;
+    owners[p] = uvec2(kNone, 0u);
+    if (points[p].pixel == kNone || size.count == 0u)
+        return;
+    vec3 x = points[p].position;
+    vec3 n = unpackNormal(points[p].normal);
+    uint owner = neighbourInOrder(p);
+    float best = geometricVariation(alpha(), x, n, clusters[owner].position, unpackNormal(clusters[owner].normal));
+    float radius2 = square(best / alpha());
+    uint first, end;
+    beginRanges(size.count);
+    while (nextRange(x, radius2, first, end))
+        for (uint i = first; i < end; ++i)
+        {
+            uint cluster = order[i];
+            float eps = geometricVariation(alpha(), x, n, clusters[cluster].position, unpackNormal(clusters[cluster].normal));
+            if (eps < best || (eps == best && cluster < owner))
+            {
+                best = eps;
+                owner = cluster;
+                radius2 = square(best / alpha());
+            }
+        }
+    owners[p] = uvec2(owner, floatBitsToUint(best));
+    vec3 d = x - clusters[owner].position;
+    float width = cubeWidth(clusters[owner].position);
+    uvec3 position = uvec3(clamp(d / width + 0.5, 0.0, 1.0) * params.fixed_scale);
+    uvec3 normal = uvec3((0.5 * n + 0.5) * params.fixed_scale);
+    for (uint axis = 0u; axis < 3u; ++axis)
+    {
+        atomicAdd(sums[owner].position[axis], position[axis]);
+        atomicAdd(sums[owner].normal[axis], normal[axis]);
+    }
+    atomicAdd(sums[owner].count, 1u);
+    atomicMin(sums[owner].least_eps, floatBitsToUint(best));
+    atomicAdd(sums[owner].distance, uint(min(1.0, length(d) / width) * params.fixed_scale));
+}

@@ -16,7 +16,6 @@ layout(set = 1, binding = 0, scalar) readonly buffer Points { SamplePoint points
 layout(set = 1, binding = 1, scalar) readonly buffer Nodes { QuadNode nodes[]; };
 layout(set = 1, binding = 2, scalar) buffer Budgets { uint budgets[]; }; // by node
 layout(set = 1, binding = 3, scalar) writeonly buffer Seeds { uint seeds[]; }; // by point, 0 before: 1 where a sample starts
-layout(set = 1, binding = 4, scalar) readonly buffer KeptSize { QueueSize kept_size; }; // samples that are there already
 
 void main()
 {
@@ -24,7 +23,7 @@ void main()
     if (i >= levelCount(params.level, params.levels))
         return;
     uint node = levelOffset(params.level, params.levels) + i;
-    uint budget = params.level == params.levels ? min(params.budget - kept_size.count, nodes[node].count) : budgets[node];
+    uint budget = params.level == params.levels ? min(params.budget, nodes[node].count) : budgets[node];
     if (params.level == params.levels)
         budgets[node] = budget;
     uint below = params.level > 1u ? levelOffset(params.level - 1u, params.levels) : 0u;

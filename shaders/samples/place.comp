@@ -2,7 +2,6 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "shaders/lib/math.glsl"
-#include "shaders/lib/random.glsl"
 #include "shaders/samples/cluster_cube.glsl"
 #include "shaders/samples/samples.h"
 
@@ -11,16 +10,13 @@
 layout(local_size_x = kSamplesGroupSize) in;
 layout(push_constant, scalar) uniform Params { ClusterParams params; };
 
-layout(set = 1, binding = 0, scalar) readonly buffer NewSize { QueueSize new_size; };
+layout(set = 1, binding = 0, scalar) readonly buffer Size { QueueSize size; };
 layout(set = 1, binding = 1, scalar) readonly buffer Occupied { uint occupied[]; };
 layout(set = 1, binding = 2, scalar) readonly buffer Sums { ClusterSums sums[]; };
 layout(set = 1, binding = 3, scalar) readonly buffer Points { SamplePoint points[]; };
 layout(set = 1, binding = 4, scalar) writeonly buffer Samples { Sample samples[]; };
 layout(set = 1, binding = 5, scalar) writeonly buffer Spheres { vec4 spheres[]; };
-layout(set = 1, binding = 6, scalar) writeonly buffer Tenures { SampleTenure tenures[]; };
-layout(set = 1, binding = 7, scalar) readonly buffer KeptSize { QueueSize kept_size; }; // samples before these
-
-layout(set = 1, binding = 8, scalar) readonly buffer Clusters { Cluster clusters[]; };
+layout(set = 1, binding = 6, scalar) readonly buffer Clusters { Cluster clusters[]; };
 
 // A round cluster of radius rho has a mean distance of 2/3 rho; its neighbours lie at 2 rho, the next ones at 3.5 and 4 rho.
 // With a reach of 4, that is 2.7 rho, every place shares about seven samples.
@@ -28,16 +24,13 @@ layout(set = 1, binding = 8, scalar) readonly buffer Clusters { Cluster clusters
 void main()
 {
     uint i = gl_GlobalInvocationID.x;
-    if (i >= new_size.count)
+    if (i >= size.count)
         return;
     ClusterSums s = sums[occupied[i]];
     SamplePoint point = points[s.nearest];
     vec3 center = clusters[occupied[i]].position;
     float away = viewDistance(center), distance_ = float(s.distance) / (params.fixed_scale * float(s.count)) * cubeWidth(center);
     float support = clamp(params.reach * distance_, 1e-3 * away, 0.5 * away);
-    uint place = kept_size.count + i;
-    samples[place] = Sample(point.position, point.normal, vec3(0.0), support, 0.0, point.pixel);
-    spheres[place] = vec4(point.position, support);
-    float greatest_eps = max(uintBitsToFloat(s.greatest_eps), params.alpha / view_scale.distance * 1e-3 * away); // a single point's is 0
-    tenures[place] = SampleTenure(greatest_eps, params.least_frames + hash(params.seed, i) % kSampleFrames);
+    samples[i] = Sample(point.position, point.normal, vec3(0.0), support, 0.0, point.pixel);
+    spheres[i] = vec4(point.position, support);
 }

@@ -43,10 +43,9 @@ struct ClusterSums // fixed-point, so that the sum does not depend on the order 
     uvec3 normal;   // (n + 1) / 2 in the same units
     uint distance;  // of the points to the centre, in units of 1 / fixed_scale of that width
     uint least_eps; // bits of the least eps of its points
-    uint greatest_eps; // bits of their greatest eps to the nearest one
     uint nearest;   // index of the point of least eps
 };
-GPU_SIZE(ClusterSums, 44);
+GPU_SIZE(ClusterSums, 40);
 
 struct Sample
 {
@@ -58,27 +57,6 @@ struct Sample
     uint pixel;
 };
 GPU_SIZE(Sample, 40);
-
-// Under a moving camera samples are kept from frame to frame while they own shading points of the new picture, which only
-// points take that lie no farther from them than those of their cluster did, and for so many frames at most: then others
-// take their place where the new picture wants them.
-GPU_CONST uint kSampleFrames = 32u; // mean number of frames that a sample is kept
-GPU_CONST uint kMostSampleFrames = 2u * kSampleFrames;
-GPU_CONST uint kKeptBit = 0x80000000u; // of a point's owner: a sample of the last frame that is kept, else a new cluster
-
-struct SampleTenure // of a sample
-{
-    float greatest_eps; // no point of its cluster lies farther away
-    uint frames_left;   // that it may still be kept
-};
-GPU_SIZE(SampleTenure, 8);
-
-struct SampleQuota // what decides how many samples are kept
-{
-    uint point_count;
-    uint claimed_count; // points that an old sample takes
-};
-GPU_SIZE(SampleQuota, 8);
 
 struct PointParams
 {
@@ -107,11 +85,8 @@ struct ClusterParams
     float alpha; // of Eq. 2, per view distance
     float fixed_scale;
     float reach; // support of a sample, in mean distances of its cluster's points to their centre
-    uint budget; // of samples
-    uint seed;
-    uint least_frames; // that a new sample may be kept; kSampleFrames more at most
 };
-GPU_SIZE(ClusterParams, 28);
+GPU_SIZE(ClusterParams, 16);
 
 // No variation counts more in the quadtree's sums, which are fixed-point: positions count for ten times what normals can.
 GPU_CONST float kMostVariation = 20.0f;

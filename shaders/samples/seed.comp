@@ -22,5 +22,5 @@ void main()
     SamplePoint point = points[seeds[i]];
     clusters[i] = Cluster(point.position, point.normal);
     spheres[i] = vec4(point.position, 0.0);
-    sums[i] = ClusterSums(uvec3(0u), 0u, uvec3(0u), 0u, 0xffffffffu, 0u, kNone);
+    sums[i] = ClusterSums(uvec3(0u), 0u, uvec3(0u), 0u, 0xffffffffu, kNone);
 }

@@ -14,7 +14,7 @@ layout(set = 1, binding = 1, scalar) buffer Sums { ClusterSums sums[]; };
 void main()
 {
     uint p = gl_GlobalInvocationID.x;
-    if (p >= params.point_count || owners[p].x >= kKeptBit) // a kept sample's, or kNone
+    if (p >= params.point_count || owners[p].x == kNone)
         return;
     if (owners[p].y == sums[owners[p].x].least_eps)
         atomicMin(sums[owners[p].x].nearest, p);

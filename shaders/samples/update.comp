@@ -21,7 +21,7 @@ void main()
     if (i >= size.count)
         return;
     ClusterSums s = sums[i];
-    sums[i] = ClusterSums(uvec3(0u), 0u, uvec3(0u), 0u, 0xffffffffu, 0u, kNone);
+    sums[i] = ClusterSums(uvec3(0u), 0u, uvec3(0u), 0u, 0xffffffffu, kNone);
     if (s.count == 0u)
         return;
     float scale = 1.0 / (params.fixed_scale * float(s.count));

@@ -8,7 +8,9 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <random>
 
 namespace
@@ -263,6 +265,41 @@ TEST(ExrPicture, WhatHasNoColourOrNoSizeIsRefused)
                   ExitCode::kUnsupported, "display window");
     expectRefused(writeExr({{.data = window(1 << 25, 0, 2, 2), .display = kWindow, .channels = rgbChannels(pattern)}}),
                   ExitCode::kInvalid, "from 0");
+}
+
+/// The library reads a value by its type, whatever size the file states, and would take what follows for something else: lengths of
+/// gigabytes among them.
+TEST(ExrPicture, AttributesOfAnotherLengthThanTheirTypesAreRefused)
+{
+    const std::vector<std::byte> whole = writeExr({{.data = kWindow, .display = kWindow, .channels = rgbChannels(pattern)}});
+    for (const std::string type : {"chlist", "compression", "box2i", "lineOrder", "float", "v2f"})
+    {
+        std::vector<std::byte> file = whole;
+        const std::string text = type + '\0'; // the last of them: an attribute may be named as its type
+        const auto found = std::find_end(file.begin(), file.end(), text.begin(), text.end(),
+                                       [](std::byte a, char b) { return a == std::byte(b); });
+        ASSERT_NE(found, file.end()) << type;
+        std::byte& size = *(found + ptrdiff_t(text.size()));
+        size = std::byte(uint8_t(size) + 1);
+        expectRefused(file, ExitCode::kInvalid, "type " + type);
+    }
+}
+
+/// A tile as large as a picture may be, in a file of some hundred bytes.
+TEST(ExrPicture, ATileThatNoFileOfThatSizeHoldsIsRefused)
+{
+    ExrPart part{.data = kWindow, .display = kWindow, .channels = rgbChannels(pattern)};
+    part.tiles = Imf::TileDescription(64, 64, Imf::ONE_LEVEL);
+    std::vector<std::byte> file = writeExr({part});
+    const std::string type = std::string("tiledesc") + '\0';
+    const auto found = std::search(file.begin(), file.end(), type.begin(), type.end(),
+                                   [](std::byte a, char b) { return a == std::byte(b); });
+    ASSERT_NE(found, file.end());
+    const uint32_t side = 10000;
+    std::byte* sizes = &*found + type.size() + sizeof(uint32_t);
+    for (int i = 0; i < 2; ++i)
+        std::memcpy(sizes + i * sizeof(side), &side, sizeof(side));
+    expectRefused(file, ExitCode::kUnsupported, "10000 x 10000");
 }
 
 std::vector<std::byte> damageable(bool tiled, Imf::Compression compression)

@@ -154,7 +154,7 @@ TEST_F(CutsAtAWall, LightNothingBehindIt)
                            .harmonic = 0,
                            .pixel = 0});
     const uint32_t count = uint32_t(samples.size()), rays = 64;
-    const Buffer size = sizeBuffer(count), on_gpu = upload("test.samples", samples), spheres, kept = sizeBuffer(0);
+    const Buffer size = sizeBuffer(count), on_gpu = upload("test.samples", samples), spheres;
     const CutStage stage(device(), *scene_, uint32_t(map->photons.size()));
     const GatherStage gather(device(), *scene_, count, rays);
     const auto gathered = [&](const PhotonMap& of, const CutStage::Input& in)
@@ -164,7 +164,7 @@ TEST_F(CutsAtAWall, LightNothingBehindIt)
                {
                    const auto cut = stage.record(rec, of.rays, *of.gpu, in);
                    gather.record(rec, of.rays,
-                                 {.size = size, .samples = on_gpu, .spheres = spheres, .kept = kept, .kept_from = kept},
+                                 {.size = size, .samples = on_gpu, .spheres = spheres},
                                  *of.gpu, cut,
                                  {.mode = in.mode,
                                   .ray_count = rays,

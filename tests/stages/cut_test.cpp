@@ -290,7 +290,7 @@ TEST_F(Cuts, AreReadNearlyAsDensityIsEstimated)
                            .pixel = 0});
     const uint32_t count = uint32_t(samples.size());
     constexpr uint32_t kRays = 64;
-    const Buffer size = sizeBuffer(count), on_gpu = upload("test.samples", samples), spheres, kept = sizeBuffer(0);
+    const Buffer size = sizeBuffer(count), on_gpu = upload("test.samples", samples), spheres;
     const CutStage stage(device(), *scene_, uint32_t(map->photons.size()));
     const GatherStage gather(device(), *scene_, count, kRays);
     const auto gathered = [&](CutMode mode)
@@ -302,7 +302,7 @@ TEST_F(Cuts, AreReadNearlyAsDensityIsEstimated)
                {
                    const auto cut = stage.record(rec, map->rays, *map->gpu, in);
                    gather.record(rec, map->rays,
-                                 {.size = size, .samples = on_gpu, .spheres = spheres, .kept = kept, .kept_from = kept},
+                                 {.size = size, .samples = on_gpu, .spheres = spheres},
                                  *map->gpu, cut,
                                  {.mode = mode,
                                   .ray_count = kRays,

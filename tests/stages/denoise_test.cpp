@@ -19,6 +19,7 @@ protected:
     {
         const auto path = builder_.compile();
         scene_ = load(path);
+        camera_ = camera;
         points_.emplace(device(), *scene_, path, camera, kWidth, kHeight);
         pixel_angle_ = camera.vertical_fov > 0 ? 2 * std::tan(camera.vertical_fov / 2) / kHeight : 0;
     }
@@ -35,29 +36,29 @@ protected:
              .orthographic_height = kHeight});
     }
 
-    /// @param shares fraction of each pixel's light that is already in the picture; none if empty
-    std::vector<gpu::vec3> filtered(const std::vector<gpu::vec3>& light, uint32_t passes,
-                                    const std::vector<float>& shares = {})
+    std::vector<gpu::vec3> filtered(const std::vector<gpu::vec3>& light, uint32_t passes)
     {
-        const Buffer noisy = upload("test.noisy", light),
-                     radiance = upload("test.radiance", std::vector<gpu::vec3>(kPixels));
-        const Buffer parts = upload("test.shares", shares);
-        const DenoiseStage stage(device(), *scene_, kPixels);
+        const Buffer input = upload("test.light", light);
+        const LightBuffers buffers(device(), kPixels);
+        SignalsStage signals(device(), *scene_, kPixels);
+        const DenoiseStage stage(device(), kPixels);
+        const FrameInfo frame{.camera = cameraParams(camera_, kWidth, kHeight)};
         submit(*scene_,
                [&](Recorder& rec)
                {
-                   rec.copy(noisy, stage.light(), kPixels * sizeof(gpu::vec3));
-                   stage.record(rec, {.points = points_->gpu->points,
-                                      .radiance = radiance,
-                                      .width = kWidth,
-                                      .height = kHeight,
-                                      .passes = passes,
-                                      .pixel_angle = float(pixel_angle_),
-                                      .glossy = false,
-                                      .shares = parts,
-                                      .shared = !shares.empty()});
+                   buffers.clear(rec);
+                   rec.copy(input, buffers.direct, kPixels * sizeof(gpu::vec3));
+                   const SignalBuffers made = signals.record(rec, frame, *points_->gpu, buffers);
+                   const Buffer& filtered = stage.record(rec, {.signal = made.direct,
+                                                               .guides = made.guides,
+                                                               .width = kWidth,
+                                                               .height = kHeight,
+                                                               .passes = passes,
+                                                               .pixel_angle = float(pixel_angle_)});
+                   rec.clear(buffers.direct); // where nothing reflects, nothing is written
+                   signals.apply(rec, made.direct, filtered, buffers.direct, kPixels);
                });
-        return contents<gpu::vec3>(radiance, kPixels);
+        return contents<gpu::vec3>(buffers.direct, kPixels);
     }
 
     Double3 reflectanceAt(uint32_t pixel) const
@@ -68,6 +69,7 @@ protected:
 
     SceneBuilder builder_;
     std::unique_ptr<SceneGpu> scene_;
+    Camera camera_;
     std::optional<ShadingPoints> points_;
     double pixel_angle_ = 0; // radians
 };
@@ -76,9 +78,9 @@ class DenoiseOfObjects : public Denoise
 {
 protected:
     /// Three passes give back the light they got, but for rounding: that of four signals.
-    void expectUnchanged(const std::vector<gpu::vec3>& light, const std::vector<float>& shares = {})
+    void expectUnchanged(const std::vector<gpu::vec3>& light)
     {
-        const auto got = filtered(light, 3, shares);
+        const auto got = filtered(light, 3);
         for (uint32_t i = 0; i < kPixels; ++i)
         {
             const Double3 want = light[i], ours = got[i];
@@ -222,21 +224,6 @@ TEST_F(DenoiseOfObjects, LeavesEvenLightEvenWhateverItsColor)
         light[i] = {float(r.x * even.x), float(r.y * even.y), float(r.z * even.z)};
     }
     expectUnchanged(light);
-}
-
-/// Where something else gives part of the light, noise is what is left of it.
-TEST_F(DenoiseOfObjects, LeavesPartOfEvenLightThatPart)
-{
-    Random random(11);
-    std::vector<gpu::vec3> light(kPixels);
-    std::vector<float> shares(kPixels);
-    for (uint32_t i = 0; i < kPixels; ++i)
-    {
-        shares[i] = i % 3 == 0 ? 1 : random.between(0, 0.9f);
-        const Double3 r = (1 - double(shares[i])) * reflectanceAt(i);
-        light[i] = {float(r.x), float(r.y), float(r.z)};
-    }
-    expectUnchanged(light, shares);
 }
 
 TEST_F(DenoiseOfObjects, KeepsLightOnItsSurface)

@@ -17,8 +17,8 @@ constexpr uint32_t kRays = 64;
 /// Samples made by hand.
 struct Samples
 {
-    Buffer size, samples, spheres, kept;
-    SamplesStage::Output output() const { return {.size = size, .samples = samples, .spheres = spheres, .kept = kept, .kept_from = kept}; }
+    Buffer size, samples, spheres;
+    SamplesStage::Output output() const { return {.size = size, .samples = samples, .spheres = spheres}; }
 };
 
 /// Form factor of a rectangle a x b, parallel to a small element at distance c below one of its corners
@@ -86,7 +86,7 @@ protected:
         const uint32_t count = uint32_t(samples.size());
         const auto cut = cutOf(scene, nodes, direction);
         const auto map = mapOf(scene, photons);
-        const Samples on_gpu{.size = sizeBuffer(count), .samples = upload("test.samples", samples), .spheres = {}, .kept = sizeBuffer(0)};
+        const Samples on_gpu{.size = sizeBuffer(count), .samples = upload("test.samples", samples), .spheres = {}};
         const GatherStage stage(device(), scene, std::max(count, 1u), kRays);
         submit(scene,
                [&](Recorder& rec)

@@ -99,12 +99,12 @@ protected:
         const auto cut = cutOf(scene, wallNodes(irradiance));
         const auto map = mapOf(scene, {});
         const Buffer size = sizeBuffer(count), on_gpu = upload("test.samples", samples),
-                     spheres = upload("test.spheres", std::vector<gpu::vec4>(count)), kept = sizeBuffer(0);
+                     spheres = upload("test.spheres", std::vector<gpu::vec4>(count));
         const GatherStage stage(device(), scene, count, kRays);
         submit(scene,
                [&](Recorder& rec)
                {
-                   stage.record(rec, map->rays, {.size = size, .samples = on_gpu, .spheres = spheres, .kept = kept, .kept_from = kept}, *map->gpu,
+                   stage.record(rec, map->rays, {.size = size, .samples = on_gpu, .spheres = spheres}, *map->gpu,
                                 *cut->gpu,
                                 {.mode = CutMode::kRefined,
                                  .ray_count = kRays,
@@ -239,6 +239,7 @@ protected:
         const RayStage rays(device(), scene);
         gpu::CameraParams view = cameraParams(cameraAt(cosine), kSide, kSide);
         view.sample_count = 1;
+        const Buffer emission = upload("test.emission", std::vector<gpu::vec3>(kSide * kSide));
         const Buffer size = sizeBuffer(1), radiance = upload("test.radiance", std::vector<gpu::vec3>(kSide * kSide)),
                      samples = upload<gpu::Sample>("test.samples", {{.position = kPoint,
                                                                      .normal = packedNormal({0, 1, 0}),
@@ -253,22 +254,18 @@ protected:
         submit(scene,
                [&](Recorder& rec)
                {
-                   const auto points = primary.record(rec, rays, {.camera = view, .specular_depth = 1});
-                   const auto sorted = interpolate.sort(rec, {.size = size, .samples = samples, .spheres = spheres, .kept = size, .kept_from = size});
+                   const auto points = primary.record(rec, rays, {.camera = view, .specular_depth = 1, .emission = emission});
+                   const auto sorted = interpolate.sort(rec, {.size = size, .samples = samples, .spheres = spheres});
                    stage.recordHarmonics(rec, sorted, harmonics,
                                          {.points = points.points,
                                           .radiance = radiance,
-                                          .noisy = radiance,
                                           .point_count = kSide * kSide,
                                           .width = kSide,
                                           .first_sample = 0,
                                           .specular_depth = 0,
                                           .seed = 0});
                });
-        const Buffer& shares = stage.shares();
         const auto pixels = contents<gpu::vec3>(radiance, kSide * kSide);
-        for (const float share : contents<float>(shares, kSide * kSide))
-            EXPECT_EQ(share, 1);
         return pixels[kSide * kSide / 2];
     }
 
@@ -383,15 +380,15 @@ TEST_F(GlossyView, OfEvenLightByRaysIsTheDirectionalReflectance)
             constexpr uint32_t kFrames = 16;
             for (uint32_t frame = 0; frame < kFrames; ++frame)
             {
-                const Buffer radiance = upload("test.radiance", std::vector<gpu::vec3>(kPixels));
+                const Buffer radiance = upload("test.radiance", std::vector<gpu::vec3>(kPixels)),
+                             emission = upload("test.emission", std::vector<gpu::vec3>(kPixels));
                 submit(*scene,
                        [&](Recorder& rec)
                        {
-                           const auto points = primary.record(rec, rays, {.camera = view, .specular_depth = 1});
+                           const auto points = primary.record(rec, rays, {.camera = view, .specular_depth = 1, .emission = emission});
                            stage.record(rec, rays, *cut->gpu,
                                         {.points = points.points,
                                          .radiance = radiance,
-                                         .noisy = radiance,
                                          .point_count = kPixels,
                                          .width = 32,
                                          .first_sample = frame,

@@ -76,7 +76,7 @@ protected:
         submit(*scene_,
                [&](Recorder& rec)
                {
-                   stage.record(rec, stage.sort(rec, {.size = size, .samples = on_gpu, .spheres = supports, .kept = size, .kept_from = size}),
+                   stage.record(rec, stage.sort(rec, {.size = size, .samples = on_gpu, .spheres = supports}),
                                 {.diffuse_points = points_->gpu->diffuse_points,
                                  .radiance = radiance,
                                  .point_count = kWidth * kHeight,

@@ -28,7 +28,8 @@ ShadingPoints::Point pointAt(const package::Package& package, const gpu::Shading
 
 ShadingPoints::ShadingPoints(const Device& device, const SceneGpu& scene, const std::filesystem::path& path,
                              const Camera& camera, uint32_t width_, uint32_t height_)
-    : width(width_), height(height_), stage(device, scene, width * height)
+    : width(width_), height(height_), stage(device, scene, width * height),
+      emission(device.array<gpu::vec3>("test.emission", width_ * height_))
 {
     const auto package = package::Package::open(path);
     check(bool(package), "{}", path.string());
@@ -37,7 +38,7 @@ ShadingPoints::ShadingPoints(const Device& device, const SceneGpu& scene, const 
     view.sample_count = 1;
     Recorder rec(device);
     rec.begin(scene.descriptorSet());
-    gpu.emplace(stage.record(rec, rays, {.camera = view, .specular_depth = 4}));
+    gpu.emplace(stage.record(rec, rays, {.camera = view, .specular_depth = 4, .emission = emission}));
     rec.submitAndWait();
     for (const gpu::ShadingPoint& point : device.download<gpu::ShadingPoint>(gpu->points, width * height))
         points.push_back(pointAt(*package, point));

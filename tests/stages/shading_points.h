@@ -19,6 +19,7 @@ struct ShadingPoints
     };
     uint32_t width, height;
     PrimaryStage stage;
-    std::optional<PrimaryStage::Output> gpu;
+    Buffer emission; // vec3[width * height]
+    std::optional<SurfaceBuffers> gpu;
     std::vector<Point> points; // [width * height]
 };

@@ -1,0 +1,22 @@
+// The light of a frame, by the term that its paths belong to (shaders/lib/terms.h).
+#pragma once
+#include "format/gpu_scene.h"
+#include "runtime/gpu/recorder.h"
+
+#include <array>
+
+/// vec3[pixel_count] each, W/(m^2 sr): what every pixel shows of it. Stages add to what clear() left black.
+struct LightBuffers
+{
+    LightBuffers(const Device& device, uint32_t pixel_count);
+
+    Buffer emission;     // also of the sky, in mirrors too
+    Buffer sharp_direct; // of lights that come from one place: without noise
+    Buffer direct;       // of all others
+    Buffer indirect;
+    Buffer glossy;
+    Buffer caustics;
+
+    std::array<const Buffer*, 6> all() const { return {&emission, &sharp_direct, &direct, &indirect, &glossy, &caustics}; }
+    void clear(Recorder& rec) const;
+};

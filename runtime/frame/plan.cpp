@@ -1,0 +1,67 @@
+#include "runtime/frame/plan.h"
+
+#include "shaders/lib/terms.h"
+#include "shaders/views/views.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace
+{
+/// What reflects this much sends a glossy ray from every pixel: a standing picture can wait for less noise.
+constexpr float kSureInMotion = 0.2f, kSureStanding = 0.05f;
+
+/// A standing picture interpolates until every pixel could have had this many rays of its own (kLeastInterpolated frames at
+/// least), then takes those: the blur of the first frames fades, and their lack of noise covers the noise of the next ones.
+constexpr uint32_t kOwnRays = 256, kLeastInterpolated = 8;
+
+/// A picture of one term shows that alone; the view of the irradiance is made of the indirect light; other views draw over all.
+bool shows(const Settings& settings, uint32_t term)
+{
+    if (settings.view != gpu::kViewNone)
+        return settings.view != gpu::kViewIrradiance || term == gpu::kTermIndirect;
+    return settings.term == gpu::kTermAll || settings.term == term;
+}
+
+/// A standing picture needs the filter less with every frame: for four times the samples one pass less, until none is left
+/// and the picture is on its way to what it should be.
+uint32_t denoisePasses(const Settings& settings, const FrameTraits& traits, const FrameInfo& frame)
+{
+    const uint32_t fewer = uint32_t(std::bit_width(frame.accumulated + 1)) / 2;
+    const bool noisy = traits.has_noisy_direct || traits.has_specular;
+    return noisy && settings.view == gpu::kViewNone && settings.denoise_passes > fewer ? settings.denoise_passes - fewer : 0;
+}
+} // namespace
+
+bool goesOn(const Settings& settings)
+{
+    return settings.view == gpu::kViewNone && (settings.history_frames > 0 || settings.antialias_frames > 0);
+}
+
+FramePlan planFrame(const Settings& settings, const FrameTraits& traits, const FrameInfo& frame)
+{
+    FramePlan plan{};
+    plan.emission = shows(settings, gpu::kTermEmission);
+    plan.direct = shows(settings, gpu::kTermDirect);
+    plan.indirect = shows(settings, gpu::kTermIndirect);
+    plan.glossy = traits.has_specular && shows(settings, gpu::kTermGlossy);
+    plan.caustics = traits.has_specular && shows(settings, gpu::kTermCaustics);
+    plan.makes_map = plan.indirect || plan.glossy;
+    // Rough reflection is from the samples' harmonics in the first frame of a picture, with little noise; harmonics of order 4
+    // cannot tell everything, so that the frames after it send rays.
+    plan.harmonics = plan.glossy && traits.reflects_roughly && GlossyMode(settings.glossy_mode) == GlossyMode::kHarmonics && !frame.stands();
+    // Interpolation blurs what is smaller than the distance of samples, however many frames it has.
+    const bool own_rays = traits.gathers_at_pixels && settings.view != gpu::kViewIrradiance &&
+                          frame.accumulated >= std::max(kOwnRays / traits.pixel_rays, kLeastInterpolated);
+    const bool gathers = plan.makes_map && (plan.indirect || traits.has_guide); // the guide learns the same whatever is shown
+    plan.gathers_at_pixels = gathers && own_rays;
+    plan.gathers_at_samples = (gathers && !own_rays) || plan.harmonics;
+    // Each costs rays a pass over a mostly empty queue. Without mirrors and glass there are only smooth layers over something
+    // diffuse, whose third reflections are too faint to matter.
+    plan.chain_depth = traits.has_mirrors ? settings.specular_depth : std::min(settings.specular_depth, 2u);
+    plan.denoise_passes = denoisePasses(settings, traits, frame);
+    plan.remembers = settings.history_frames > 0 && goesOn(settings) && !frame.stands();
+    plan.antialiases = settings.antialias_frames > 0 && goesOn(settings) && !frame.stands();
+    plan.sure_reflectance = frame.stands() ? kSureStanding : kSureInMotion;
+    return plan;
+}

@@ -1,0 +1,22 @@
+#include "runtime/stages/compose.h"
+
+#include "shaders/compose/compose.h"
+
+ComposeStage::ComposeStage(const Device& device, uint32_t max_pixels)
+    : sum_(device.kernel("compose/sum")), picture_(device.array<gpu::vec3>("compose.picture", max_pixels))
+{
+}
+
+const Buffer& ComposeStage::record(Recorder& rec, const LightBuffers& light, const FramePlan& plan, uint32_t point_count) const
+{
+    const auto scope = rec.scope("compose");
+    rec.run(sum_, point_count, gpu::ComposeParams{.point_count = point_count, .emission = plan.emission},
+            {{"Emission", light.emission},
+             {"SharpDirect", light.sharp_direct},
+             {"Direct", light.direct},
+             {"Indirect", light.indirect},
+             {"Glossy", light.glossy},
+             {"Caustics", light.caustics},
+             {"Picture", picture_}});
+    return picture_;
+}

@@ -1,0 +1,17 @@
+// The picture of a frame as the sum of its terms.
+#pragma once
+#include "runtime/frame/light_buffers.h"
+#include "runtime/frame/plan.h"
+
+class ComposeStage
+{
+public:
+    ComposeStage(const Device& device, uint32_t max_pixels);
+
+    /// The terms that `plan` shows. @return vec3[point_count], W/(m^2 sr)
+    const Buffer& record(Recorder& rec, const LightBuffers& light, const FramePlan& plan, uint32_t point_count) const;
+
+private:
+    Kernel sum_;
+    Buffer picture_;
+};
