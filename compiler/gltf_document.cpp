@@ -1,5 +1,7 @@
 #include "compiler/gltf_document.h"
 
+#include "format/bad_json.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -90,11 +92,7 @@ Result<json> parseJson(std::string_view text)
     }
     catch (const json::exception& e)
     {
-        std::string reason = e.what(); // "[json.exception.parse_error.101] parse error at line 1, ...: ..."
-        if (const size_t end = reason.find("] "); end != std::string::npos)
-            reason.erase(0, end + 2);
-        std::replace(reason.begin(), reason.end(), '\n', ' ');
-        return Error{ExitCode::kInvalid, fmt::format("its JSON cannot be read: {}", reason)};
+        return badJson(e.what());
     }
 }
 

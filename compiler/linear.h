@@ -1,7 +1,7 @@
 // Linear algebra of importing: unit vectors that always exist, and affine transforms in double precision.
 #pragma once
-#include "compiler/vec3d.h"
 #include "compiler/vector_math.h"
+#include "format/vec3d.h"
 
 #include <array>
 #include <cmath>

@@ -1,8 +1,8 @@
 // The scene between reading glTF and writing the package.
 #pragma once
-#include "compiler/vec3d.h"
 #include "compiler/warnings.h"
 #include "format/gpu_scene.h"
+#include "format/vec3d.h"
 
 #include <cstdint>
 #include <optional>

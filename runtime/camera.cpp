@@ -13,6 +13,7 @@ float pixelSide(const gpu::CameraParams& camera)
 
 gpu::vec3 operator+(gpu::vec3 a, gpu::vec3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
 gpu::vec3 operator*(float s, gpu::vec3 v) { return {s * v.x, s * v.y, s * v.z}; }
+float dot(gpu::vec3 a, gpu::vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 gpu::vec3 cross(gpu::vec3 a, gpu::vec3 b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
 gpu::vec3 normalize(gpu::vec3 v) { return (1 / std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z)) * v; }
 
@@ -44,6 +45,14 @@ std::optional<Camera> findCamera(const std::vector<Camera>& cameras, const std::
     return cameras[index];
 }
 
+std::string noCamera(const std::vector<Camera>& cameras, const std::string& name_or_index)
+{
+    std::string names;
+    for (size_t i = 0; i < cameras.size(); ++i)
+        names += fmt::format("{}{} ({})", i ? ", " : "", cameras[i].name, i);
+    return fmt::format("there is no camera '{}'; the package has {}", name_or_index, names);
+}
+
 Result<Camera> chooseCamera(const package::Package& package, const std::string& name_or_index)
 {
     const std::vector<Camera> cameras = packageCameras(package);
@@ -51,10 +60,7 @@ Result<Camera> chooseCamera(const package::Package& package, const std::string& 
         return cameras.front();
     if (const auto camera = findCamera(cameras, name_or_index))
         return *camera;
-    std::string names;
-    for (size_t i = 0; i < cameras.size(); ++i)
-        names += fmt::format("{}{} ({})", i ? ", " : "", cameras[i].name, i);
-    return Error{ExitCode::kUsage, fmt::format("there is no camera '{}'; the package has {}", name_or_index, names)};
+    return Error{ExitCode::kUsage, noCamera(cameras, name_or_index)};
 }
 
 gpu::CameraParams cameraParams(const Camera& camera, uint32_t width, uint32_t height)

@@ -23,6 +23,9 @@ std::vector<Camera> packageCameras(const package::Package& package);
 /// Finds a camera by its name, or by its index where no name matches.
 std::optional<Camera> findCamera(const std::vector<Camera>& cameras, const std::string& name_or_index);
 
+/// The sentence that findCamera() found none, with those that there are.
+std::string noCamera(const std::vector<Camera>& cameras, const std::string& name_or_index);
+
 /// The camera named on the command line, or the first where `name_or_index` is empty.
 /// @return kUsage listing the cameras
 Result<Camera> chooseCamera(const package::Package& package, const std::string& name_or_index);
@@ -35,5 +38,6 @@ float pixelSide(const gpu::CameraParams& camera);
 
 gpu::vec3 operator+(gpu::vec3 a, gpu::vec3 b);
 gpu::vec3 operator*(float s, gpu::vec3 v);
+float dot(gpu::vec3 a, gpu::vec3 b);
 gpu::vec3 cross(gpu::vec3 a, gpu::vec3 b);
 gpu::vec3 normalize(gpu::vec3 v);

@@ -48,7 +48,7 @@ struct GlobalIllumination::Context
     const FramePlan& plan;
     const Settings& settings;
     const SurfaceBuffers& surface;
-    uint32_t pixel_count;
+    uint32_t point_count;
     uint32_t seed;           // of this frame alone
     uint32_t placement_seed; // the same, of where irradiance samples are
 };
@@ -76,7 +76,8 @@ GlobalIllumination::GlobalIllumination(const Device& device, const SceneGpu& sce
     : scene_(scene), width_(width), height_(height),
       has_specular_(scene.hasFeature(gpu::kFeatureSpecular)), has_caustic_targets_(scene.info().caustic_target_count > 0),
       has_mirrors_(has_caustic_targets_ || scene.hasFeature(gpu::kFeatureTransmission | gpu::kFeatureThin)),
-      light_(device, width * height), primary_(device, scene, width * height), view_scale_(device, scene), direct_(device, scene, width * height),
+      point_count_(width * height * (scene.hasSmoothLayers() ? 2 : 1)), light_(device, point_count_),
+      primary_(device, scene, width * height, scene.hasSmoothLayers()), view_scale_(device, scene), direct_(device, scene, point_count_),
       photons_(device, scene, PhotonKind::kGlobal, settings.photon_count, photonCapacity(device, settings.photon_capacity)),
       caustic_photons_(device, scene, PhotonKind::kCaustic, settings.caustic_photons,
                        photonCapacity(device, uint64_t(settings.caustic_photons) * kCausticBounces)),
@@ -86,7 +87,7 @@ GlobalIllumination::GlobalIllumination(const Device& device, const SceneGpu& sce
       legs_(device), cut_(device, scene, photonCapacity(device, settings.photon_capacity)),
       samples_(device, width, height, settings.sample_count),
       gather_(device, scene, settings.sample_count, settings.gather_rays), interpolate_(device, settings.sample_count),
-      glossy_(device, scene, width * height), caustics_(device, scene), compose_(device, width * height), views_(device, scene, width * height)
+      glossy_(device, scene, point_count_), caustics_(device, scene), compose_(device, width * height), views_(device, scene, width * height)
 {
     if (GuideStage::helps(scene))
         guide_.emplace(device, scene, settings.photon_count);
@@ -126,7 +127,7 @@ const Buffer& GlobalIllumination::record(Recorder& rec, const RayStage& rays, co
                     .plan = plan,
                     .settings = settings,
                     .surface = surface,
-                    .pixel_count = width_ * height_,
+                    .point_count = point_count_,
                     .seed = traceSeed(frame.camera.seed, frame.accumulated, gpu::kTermIndirect),
                     .placement_seed = traceSeed(placement.seed, frame.accumulated, gpu::kTermIndirect)};
     if (plan.direct)
@@ -149,7 +150,7 @@ const Buffer& GlobalIllumination::record(Recorder& rec, const RayStage& rays, co
         recordCaustics(c);
     if (plan.denoise_passes > 0 || plan.remembers || plan.antialiases)
         recordSignals(c);
-    const Buffer& picture = compose_.record(rec, light_, plan, width_ * height_);
+    const Buffer& picture = compose_.record(rec, light_, plan, width_ * height_, point_count_);
     if (settings.view != gpu::kViewNone)
         recordView(c, picture);
     return picture;
@@ -177,7 +178,7 @@ void GlobalIllumination::recordSignals(const Context& c)
                                            .pixel_angle = c.frame.camera.orthographic ? 0 : pixelSide(c.frame.camera)})
                 : signal;
         if (c.plan.remembers || c.plan.denoise_passes > 0)
-            signals_->apply(c.rec, signal, filtered, light, c.pixel_count);
+            signals_->apply(c.rec, signal, filtered, light, width_ * height_);
     };
     if (c.plan.direct && direct_.isNoisy())
         filter(signals.direct, light_.direct);
@@ -196,7 +197,7 @@ void GlobalIllumination::recordDirect(const Context& c) const
                    {.points = c.surface.points,
                     .radiance = light_.sharp_direct,
                     .noisy = light_.direct,
-                    .point_count = c.pixel_count,
+                    .point_count = c.point_count,
                     .light_sample_count = c.settings.direct_samples,
                     .candidate_count = c.settings.direct_candidates,
                     .first_sample = c.frame.accumulated,
@@ -340,7 +341,7 @@ void GlobalIllumination::recordIndirect(const Context& c, const InterpolateStage
     interpolate_.record(c.rec, samples,
                         {.diffuse_points = c.surface.diffuse_points,
                          .radiance = light_.indirect,
-                         .point_count = c.pixel_count,
+                         .point_count = c.point_count,
                          .width = width_,
                          .alpha = c.settings.sample_alpha,
                          .white = c.settings.view == gpu::kViewIrradiance});
@@ -353,7 +354,7 @@ void GlobalIllumination::recordPixelGather(const Context& c, const PhotonTreeSta
     gather_.recordPixels(c.rec, c.rays, map, cut, gatherInput(c),
                          {.points = c.surface.points,
                           .radiance = light_.indirect,
-                          .point_count = c.pixel_count,
+                          .point_count = c.point_count,
                           .frame = c.frame.accumulated,
                           .seed = traceSeed(c.frame.camera.seed, 0, gpu::kTermIndirect)},
                          guide_ ? &*guide_ : nullptr);
@@ -364,7 +365,7 @@ void GlobalIllumination::recordGlossy(const Context& c, const CutStage::Output& 
 {
     const GlossyStage::Input in{.points = c.surface.points,
                                 .radiance = light_.glossy,
-                                .point_count = c.pixel_count,
+                                .point_count = c.point_count,
                                 .width = width_,
                                 .first_sample = c.frame.accumulated,
                                 .specular_depth = c.plan.chain_depth,
@@ -391,7 +392,7 @@ void GlobalIllumination::recordCaustics(const Context& c)
     caustics_.record(c.rec, caustic_tree_.output(),
                      {.points = c.surface.points,
                       .radiance = light_.caustics,
-                      .point_count = c.pixel_count,
+                      .point_count = c.point_count,
                       .photon_count = settings.caustic_density_photons,
                       .radius = shrunkRadius(settings.caustic_radius, c.frame.accumulated)});
 }

@@ -81,6 +81,7 @@ private:
     const SceneGpu& scene_;
     uint32_t width_, height_;
     bool has_specular_, has_caustic_targets_, has_mirrors_;
+    uint32_t point_count_; // shading points: one a pixel, or two
     LightBuffers light_;
     PrimaryStage primary_;
     ViewScaleStage view_scale_;

@@ -88,6 +88,12 @@ bool isRough(const gpu::Material& material)
 {
     return material.roughness > gpu::kHarmonicsFrom && (material.specular > 0 || material.metallic > 0);
 }
+
+bool hasSmoothLayer(const gpu::Material& material)
+{
+    const bool smooth = material.roughness < gpu::kSmoothRoughness && material.metallic < 1 && material.specular > 0;
+    return smooth || (material.clearcoat > 0 && material.clearcoat_roughness < gpu::kSmoothRoughness);
+}
 } // namespace
 
 Result<std::unique_ptr<SceneGpu>> SceneGpu::create(const Device& device, const package::Package& package)
@@ -133,6 +139,7 @@ Result<std::unique_ptr<SceneGpu>> SceneGpu::create(const Device& device, const p
     scene->features_ = sceneFeatures(package);
     scene->constants_ = {{{"kSceneFeatures", scene->features_}, {"kUsedTexturePages", package.meta().texture_pages()->size()}}};
     scene->reflects_roughly_ = std::ranges::any_of(package.materials(), isRough);
+    scene->has_smooth_layers_ = std::ranges::any_of(package.materials(), hasSmoothLayer);
     scene->createImages(package);
     scene->createDescriptorSet();
     return scene;
@@ -151,6 +158,14 @@ void SceneGpu::setLight(Recorder& rec, uint32_t index, const gpu::Light& light)
     check(index < info_.light_count, "light {} of {}", index, info_.light_count);
     ++lights_version_;
     rec.write(buffers_[gpu::kLightsBinding - gpu::kBvhNodesBinding], index * sizeof(light), std::as_bytes(std::span(&light, 1)));
+}
+
+void SceneGpu::setEmission(Recorder& rec, uint32_t index, gpu::vec3 emission)
+{
+    const Buffer& materials = buffers_[gpu::kMaterialsBinding - gpu::kBvhNodesBinding];
+    check((index + 1) * sizeof(gpu::Material) <= materials.size(), "material {} of {} bytes of them", index, materials.size());
+    ++lights_version_;
+    rec.write(materials, index * sizeof(gpu::Material) + offsetof(gpu::Material, emission), std::as_bytes(std::span(&emission, 1)));
 }
 
 void SceneGpu::createImages(const package::Package& package)

@@ -5,10 +5,10 @@
 
 #include <array>
 
-/// vec3[pixel_count] each, W/(m^2 sr): what every pixel shows of it. Stages add to what clear() left black.
+/// vec3[point_count] each, W/(m^2 sr): what every shading point shows of it. Stages add to what clear() left black.
 struct LightBuffers
 {
-    LightBuffers(const Device& device, uint32_t pixel_count);
+    LightBuffers(const Device& device, uint32_t point_count);
 
     Buffer emission;     // also of the sky, in mirrors too
     Buffer sharp_direct; // of lights that come from one place: without noise

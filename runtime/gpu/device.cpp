@@ -2,11 +2,11 @@
 
 #include "format/block_texture.h"
 #include "format/gpu_scene.h"
+#include "runtime/gpu/cache_folder.h"
 
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <cstdlib>
 #include <fstream>
 #include <iterator>
 
@@ -125,13 +125,10 @@ void Device::nameObject(VkObjectType type, uint64_t handle, std::string_view nam
 
 void Device::loadPipelineCache()
 {
-    const char* cache_home = std::getenv("XDG_CACHE_HOME");
-    const char* home = std::getenv("HOME");
     std::vector<char> data;
-    if (cache_home || home)
+    if (const auto folder = cacheFolder())
     {
-        const auto folder = (cache_home ? std::filesystem::path(cache_home) : std::filesystem::path(home) / ".cache") / "lumicut";
-        pipeline_cache_path_ = folder / fmt::format("pipelines-{:04x}-{:04x}-{:08x}.bin", properties_.vendorID,
+        pipeline_cache_path_ = *folder / fmt::format("pipelines-{:04x}-{:04x}-{:08x}.bin", properties_.vendorID,
                                                     properties_.deviceID, properties_.driverVersion);
         std::ifstream file(pipeline_cache_path_, std::ios::binary);
         data.assign(std::istreambuf_iterator<char>(file), {});

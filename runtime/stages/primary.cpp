@@ -2,15 +2,15 @@
 
 #include "runtime/camera.h"
 
-PrimaryStage::PrimaryStage(const Device& device, const SceneGpu& scene, uint32_t max_pixels)
-    : has_specular_(scene.hasFeature(gpu::kFeatureSpecular)),
+PrimaryStage::PrimaryStage(const Device& device, const SceneGpu& scene, uint32_t max_pixels, bool splits)
+    : has_specular_(scene.hasFeature(gpu::kFeatureSpecular)), splits_(splits),
       generate_(device.kernel("primary/generate")),
       chain_(device.kernel("primary/chain", scene.constants())),
-      queue_(device, "primary.queue", max_pixels),
-      next_queue_(device, "primary.next_queue", max_pixels),
-      hits_(device.texelArray<gpu::Hit>("primary.hits", max_pixels)),
-      points_(device.array<gpu::ShadingPoint>("primary.points", max_pixels)),
-      diffuse_points_(device.texelArray<gpu::DiffusePoint>("primary.diffuse_points", max_pixels))
+      queue_(device, "primary.queue", max_pixels * (splits ? 2 : 1)),
+      next_queue_(device, "primary.next_queue", max_pixels * (splits ? 2 : 1)),
+      hits_(device.texelArray<gpu::Hit>("primary.hits", max_pixels * (splits ? 2 : 1))),
+      points_(device.array<gpu::ShadingPoint>("primary.points", max_pixels * (splits ? 2 : 1))),
+      diffuse_points_(device.texelArray<gpu::DiffusePoint>("primary.diffuse_points", max_pixels * (splits ? 2 : 1)))
 {
 }
 
@@ -34,6 +34,7 @@ SurfaceBuffers PrimaryStage::record(Recorder& rec, const RayStage& rays, const I
     {
         const gpu::ChainParams params{.depth = depth,
                                       .depth_limit = depth_limit,
+                                      .splits = splits_ && depth == 0,
                                       .pixel_count = pixel_count,
                                       .first_sample = in.camera.first_sample,
                                       .seed = in.camera.seed,
@@ -48,5 +49,5 @@ SurfaceBuffers PrimaryStage::record(Recorder& rec, const RayStage& rays, const I
         rays.close(rec, next->size);
         std::swap(queue, next);
     }
-    return {.points = points_, .diffuse_points = diffuse_points_};
+    return {.points = points_, .diffuse_points = diffuse_points_, .point_count = pixel_count * (splits_ ? 2 : 1)};
 }

@@ -7,10 +7,11 @@ GPU_NAMESPACE_BEGIN
 
 struct ComposeParams
 {
-    uint point_count;
-    uint emission; // 0: it is there, for camera rays find it, but not shown
+    uint pixel_count;
+    uint point_count; // pixels, or twice as many: two points a pixel
+    uint emission;    // 0: it is there, for camera rays find it, but not shown
 };
-GPU_SIZE(ComposeParams, 8);
+GPU_SIZE(ComposeParams, 12);
 
 GPU_NAMESPACE_END
 #endif

@@ -28,6 +28,7 @@ struct ChainParams
 {
     uint depth;       // specular events before this one
     uint depth_limit; // most specular events in a chain
+    uint splits;      // 1: mirrored light goes on to a second point of its own, [pixel_count + pixel]
     uint pixel_count;
     uint first_sample;
     uint seed;
@@ -35,7 +36,7 @@ struct ChainParams
     float spread; // by which it widens a metre
     vec3 eye;     // the camera's position
 };
-GPU_SIZE(ChainParams, 40);
+GPU_SIZE(ChainParams, 44);
 
 struct ShadingPoint // where a pixel's light is to be found: first vertex after E S* that scatters
 {

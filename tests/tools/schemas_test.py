@@ -53,6 +53,8 @@ with tempfile.TemporaryDirectory() as name:
               run("lumicut-compare", "--welch", "0.exr", "1.exr", "--against", "1.exr", "0.exr", "--json"))
         check("lumicut-bench-rays-1", run("lumicut-bench", "rays", "cornell.lumi", "--size", "32x24", "--repeats", "1",
                                           "--json"))
+        check("lumicut-bench-motion-1", run("lumicut-bench", "motion", "cornell.lumi", "--size", "24x16", "--frames", "2",
+                                            "--warm-up", "1", "--spp", "1", "--mode", "direct", "--cache", "kept", "--json"))
     else:
         for report in ("plain.json", "full.json"):
             check("lumicut-compile-report-1", (folder / report).read_text())
@@ -60,6 +62,8 @@ with tempfile.TemporaryDirectory() as name:
             check("lumicut-pkg-info-1", run("lumicut-pkg", "info", package, "--format", "json"))
         check("lumicut-pkg-diff-1", run("lumicut-pkg", "diff", "cornell.lumi", "decal.lumi", "--format", "json",
                                         codes=(1,)))
+        document = (schemas.parent / "path.md").read_text()
+        check("lumicut-path-1", document.split("```json\n")[1].split("```")[0])
         run("lumicut-pkg", "bundle", "cornell.lumi", "-o", "demo.tar.zst", "--player", programs / "lumicut-pkg")
         subprocess.run(["tar", "--zstd", "-xf", "demo.tar.zst"], cwd=folder, check=True)
         check("lumicut-pkg-bundle-manifest-1", (folder / "demo/manifest.json").read_text())

@@ -1,0 +1,13 @@
+// What is left of the light after all lights have been switched off.
+#pragma once
+#include "tools/bench/motion.h"
+
+struct Ghost // shares of the light of the last frame that was lit
+{
+    static constexpr std::array<uint32_t, 2> kFrames{1, 4}; // after that one
+    std::array<double, 2> all;      // all terms but emission, which is seen itself
+    std::array<double, 2> indirect; // the term "indirect" alone
+};
+
+/// The camera goes on along its path. Lights and emissions are as before afterwards.
+Ghost measureGhost(const OpenedPackage& opened, const MotionBenchOptions& options, const CameraOfFrame& camera);
