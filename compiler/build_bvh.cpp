@@ -15,7 +15,7 @@
 
 namespace
 {
-/// What Embree's callbacks need to know.
+/// User data of Embree's callbacks.
 struct Source
 {
     const WorldMesh& mesh;

@@ -15,5 +15,5 @@ struct LightTables
 /// Power: point 4 pi I; spot over its cone; directional E pi R^2 and environment pi R^2 x radiance integrated over the
 /// sphere, R the radius of the scene's bounding sphere; triangle pi A x mean emission (texture averaged over the
 /// triangle), twice that where it emits on both sides. Lights without power are left out. Lights are picked
-/// in proportion to power; beams (directional and environment) beside other lights for half of all samples at most.
+/// in proportion to power; directional and environment lights beside local ones for at most half of all samples.
 LightTables buildLights(const SceneData& scene);

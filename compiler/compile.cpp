@@ -27,7 +27,7 @@
 
 namespace
 {
-/// Times the stages and says when each is over.
+/// Times the stages and reports the end of each.
 class Stopwatch
 {
 public:
@@ -51,7 +51,7 @@ private:
     double last_ = 0;
 };
 
-/// Adds the options' views, which are in the file's coordinates, and goes over to the package's.
+/// Adds the options' views, which are in the file's coordinates, and converts everything to the package's.
 Status placeScene(const CompileOptions& options, ImportedScene& imported)
 {
     std::vector<CameraView>& cameras = imported.scene.cameras;

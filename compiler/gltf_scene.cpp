@@ -195,7 +195,7 @@ private:
     SceneNodes nodes_;
 };
 
-/// The scene that `wanted` names or numbers; where it is empty the file's default, else its first.
+/// The scene of that name or index; if `wanted` is empty the file's default, without one its first.
 Result<size_t> chooseScene(const tinygltf::Model& model, const std::string& wanted)
 {
     if (wanted.empty())

@@ -23,7 +23,7 @@ namespace
 {
 constexpr size_t kParallelBytes = 1u << 20;
 
-/// Fills `state`, which already owns whatever keeps `bytes` alive.
+/// Fills `state`, which already owns the memory of `bytes`.
 template <typename State>
 Status read(std::span<const std::byte> bytes, State& state)
 {

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# What each part of mode gi is worth: error of the first frame and GPU milliseconds side by side, one setting changed at a
+# The effect of each part of mode gi: error of the first frame and GPU milliseconds side by side, one setting changed at a
 # time; then the illumination cut's lookups against full kNN and path tracing: with these settings, and like against like,
-# with the photons of the method (100 an estimate) and without the light that the cut finds missing at edges and kNN does not
+# with the photons of the method (100 an estimate) and without the cut's coverage correction at edges, which kNN does not have
 # (cut.probes=0).
 #   tools/ablation.sh [OPTION...] [OUTDIR]    OUTDIR: packages and references; default build/truth
 #     --quick            small pictures, references of 256 samples, small counts
@@ -9,7 +9,7 @@
 #     --size WxH         default 320x180
 #     --spp N            samples a pixel of the reference; default 4096
 #     --seeds N          first frames to average over; default 4
-#     --travel N         frames of a moving camera before the rows that show what reuse is worth; default 60
+#     --travel N         frames of a moving camera before the rows about reuse; default 60
 #     --set NAME=VALUE   a setting of all rows; repeatable
 #     --row "NAME=VALUE..."   one more row; repeatable
 # The reference's own noise is part of every error. LUMICUT_BIN=FOLDER uses the programs there instead of building.

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# How compiling grows: seconds by stage, peak memory and bytes for landscapes of 0.1, 1 and 5 million triangles.
+# The cost of compiling by size: seconds by stage, peak memory and bytes for landscapes of 0.1, 1 and 5 million triangles.
 #   tools/compile_slopes.sh [OUTDIR] [--sizes N,N,...] [--jobs N] [--scene FILE]
 # --scene measures that scene instead: cold, unchanged, compiled again from the cache, and (of a .glb) with one texture changed.
 set -euo pipefail

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Pictures of what happens within one frame of the atrium in mode gi, as README.md shows them, and of what the path-traced
+# Pictures of what happens within one frame of the atrium in mode gi, as docs/gi-overview.md shows them, and of what the path-traced
 # reference makes of the same view.
 #   tools/pictures.sh [OPTION...] [OUTDIR]    OUTDIR: where the PNG files go; default tools/pictures
 #     --scene SCENE        cornell, caustics or atrium; default atrium

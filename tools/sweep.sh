@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Compiles and renders every glTF file below folders, and prints what became of each.
+# Compiles and renders every glTF file below folders, and prints the result of each.
 #   tools/sweep.sh [OPTION...] DIR...
 #     -j N, --jobs N     files at a time; default as many as there are processors
 #     --size WxH         of the pictures; default 96x54
@@ -13,7 +13,7 @@
 # A row: number, result, triangles, seconds and bytes of the package, items that were damaged, file, and why it was refused.
 # Results: ok; repaired (damaged items were replaced, with warnings); refused; crashed; timeout; dark (compiled, no picture).
 # sheet.png shows the pictures under their numbers. Where FILE.report.json of glTF-Validator lies beside a file, a last list
-# names files with errors in it that were compiled without a word about damage.
+# names files with errors in it that were compiled without a warning about damage.
 # Exit code 4 where anything crashed or ran out of time, else 0. LUMICUT_BIN=FOLDER uses the programs there instead of building.
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/bench/scenes.sh"
@@ -30,7 +30,7 @@ json_number() {
     sed -n "s/^ *\"$1\": *\([0-9.e+-]*\),\{0,1\}$/\1/p" "$2" | head -n 1
 }
 
-# ended CODE: what an exit code says of a program.
+# ended CODE: how a program with that exit code ended.
 ended() {
     case $1 in
     0) echo ok ;;

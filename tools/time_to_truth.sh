@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# How soon mode gi comes near the truth on two Cornell boxes at 256x256: seconds and relMSE after 1, 2, 4, ... frames, next
+# Convergence of mode gi on two Cornell boxes at 256x256: seconds and relMSE after 1, 2, 4, ... frames, next
 # to what Blender's Cycles took. The scenes are not part of the repository; without them the script says so and ends.
 #   tools/time_to_truth.sh [OPTION...] [OUTDIR]    OUTDIR: packages and references; default build/truth
 #     --quick            references of 512 samples, 8 frames

@@ -107,7 +107,7 @@ protected:
     }
 };
 
-/// A pixel as the filter sees it, in double precision.
+/// A pixel as the filter reads it, in double precision.
 struct Seen
 {
     Double3 light, reflectance, normal;
@@ -330,7 +330,7 @@ TEST_F(Denoise, AveragesNoiseAsMuchAsItsWeightsSay)
             sum += got[y * kWidth + x].x, squares += double(got[y * kWidth + x].x) * got[y * kWidth + x].x;
     const double mean = sum / count, variance = squares / count - mean * mean;
     const double weights = 1 + 4 * std::exp2(-0.5) + 4 * 0.5, gain = (1 + 4 * 0.5 + 4 * 0.25) / (weights * weights);
-    // Neighbours share pixels: the variance is known as well as from a ninth as many numbers.
+    // Neighbours share pixels: the variance is as accurate as from a ninth as many independent values.
     EXPECT_NEAR(variance, gain / 12, 4 * std::sqrt(2.0 * 9 / count) * gain / 12);
     EXPECT_NEAR(mean, mean_before, 4 * std::sqrt(1.0 / 12 / kPixels));
 }
@@ -343,7 +343,7 @@ TEST_F(Denoise, LeavesShadowsWithoutNoiseSharp)
         if (i % kWidth >= kWidth / 2)
             light[i] = {2, 2, 2};
     const auto got = filtered(light, 3);
-    // The first pass, which does not know the noise yet, takes the pixels at the edge for noisy. Else a pixel three off
+    // The first pass has no noise estimate yet and treats the pixels at the edge as noisy. Otherwise a pixel three off
     // the edge would get two fifths of the other side's light, as from a square of 27 pixels.
     for (uint32_t i = 0; i < kPixels; ++i)
     {

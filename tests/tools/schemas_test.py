@@ -26,7 +26,7 @@ def check(name, text):
     jsonschema.Draft7Validator.check_schema(schema)
     jsonschema.validate(json.loads(text), schema)
     checked.add(name)
-    # A schema that takes anything would not tell: without its fields the document is refused.
+    # A schema that accepts anything would prove nothing: without its fields the document must be refused.
     for field in schema["required"]:
         broken = json.loads(text)
         del broken[field]

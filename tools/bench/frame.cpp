@@ -98,7 +98,7 @@ RayThroughput::Kind kindOf(const RayTally::Entry& rays)
                                       : RayThroughput::kDiffuse;
 }
 
-/// Milliseconds that the rays would take if nothing but tracing them at the measured throughput took any time.
+/// Milliseconds that tracing the rays alone would take at the measured throughput.
 double floorMs(const RayTally::Entry& rays, const RayThroughput& throughput)
 {
     return double(rays.ray_count) / throughput.megaraysPerSecond(kindOf(rays)) * 1e-3;

@@ -1,4 +1,4 @@
-// What every measurement on a package begins with, and how the measurements are summed up.
+// Opening a package for a measurement, and statistics of measurements.
 #pragma once
 #include "runtime/camera.h"
 #include "runtime/gpu/recorder.h"
