@@ -6,8 +6,8 @@
 #include "shaders/lib/path.glsl"
 #include "shaders/lib/tile.glsl"
 
-// What rough lobes reflect of the light around a shading point, from the spherical harmonics of the irradiance samples whose
-// support holds it, with the weights of interpolation. One thread per pixel.
+// Reflection of rough lobes at a shading point, from the spherical harmonics of the irradiance samples whose support contains
+// it, with the weights of interpolation. One thread per pixel.
 
 layout(local_size_x = kRaysGroupSize) in;
 layout(push_constant, scalar) uniform Params { GlossyParams params; };

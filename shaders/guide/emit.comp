@@ -4,8 +4,8 @@
 #include "shaders/lib/emission.glsl"
 #include "shaders/guide/guide.h"
 
-// How one photon per thread leaves its light, as photons/emit.comp, but by the learned distribution: more of them, of less
-// power each, where they are wanted.
+// Emits one photon per thread, like photons/emit.comp but with the learned distribution: more photons of less power each where
+// importance is high.
 
 layout(local_size_x = kRaysGroupSize) in;
 layout(push_constant, scalar) uniform Params { EmitParams params; };

@@ -35,15 +35,15 @@ GPU_SIZE(GuideGroups, 92);
 
 struct GuideScore
 {
-    uint now;     // gathering rays at the places of this frame's photons, in proportion to their power, fixed point
+    uint now;     // importance at the places of this frame's photons, weighted by their power, fixed point
     float before; // fading sum over the frames
 };
 GPU_SIZE(GuideScore, 8);
 
-struct GuideDistribution // that photons leave by, learned
+struct GuideDistribution // of emission, learned
 {
     float groups[kGuideGroups]; // probability of a group and those before it
-    float cells[kGuideTotal];   // within its group, probability of a cell and those before it: no digits are lost on the others
+    float cells[kGuideTotal];   // within its group, cumulative probability of its cells: more precise than over all groups
 };
 GPU_SIZE(GuideDistribution, 32800);
 

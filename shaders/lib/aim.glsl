@@ -1,5 +1,5 @@
-// Aims gathering rays where light comes from. Which way that is, legs of photons' paths tell that arrived nearby, so that rays are
-// not lost on what is bright and out of sight (Jensen 1995, "Importance Driven Path Tracing using the Photon Map"; from where each
+// Aims gathering rays where light comes from, estimated from segments (legs) of photons' paths that arrived nearby, so that no
+// rays are spent on what is bright but occluded (Jensen 1995, "Importance Driven Path Tracing using the Photon Map"; from where each
 // came is known here, and is seen from the sample under another angle). One group per sample: all its threads call each function.
 #ifndef LIB_AIM_GLSL
 #define LIB_AIM_GLSL

@@ -1,4 +1,4 @@
-// Climbing a tree from its leaves with one thread a leaf: at every node the second to arrive goes on, so nobody waits.
+// Climbing a tree from its leaves with one thread a leaf: at every node the second to arrive continues, so no thread waits.
 // Functions only.
 #ifndef LIB_CLIMB_GLSL
 #define LIB_CLIMB_GLSL

@@ -15,7 +15,7 @@ vec4[4] harmonicBasis(vec3 d)
                    vec4(r38 * x * (5.0 * z2 - 1.0), 0.5 * r15 * z * across, r58 * x * (x * x - 3.0 * y * y), 0.0));
 }
 
-/// Share of a surface's reflection that is from harmonics where samples reach it. None where something shines through or the
+/// Fraction of a surface's reflection that is computed from harmonics where samples reach it. None where something shines through or the
 /// lobe is not the one round lobe that they know; and next to none where hardly anything is diffuse, for there are no samples
 /// on such surfaces.
 float harmonicShare(Bsdf b)

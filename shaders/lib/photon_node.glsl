@@ -1,4 +1,4 @@
-// What a node of the photon tree says of the light around it. The kernel declares `buffer Size`,
+// Estimates of the light around a node of the photon tree. The kernel declares `buffer Size`,
 // `buffer Sums { PhotonSums sums[]; }` and the usamplerBuffers TreeNodes and Photons before it includes this. Functions only.
 #ifndef LIB_PHOTON_NODE_GLSL
 #define LIB_PHOTON_NODE_GLSL

@@ -32,7 +32,7 @@ struct PathState // between two vertices
     uint stored;   // photons so far
 };
 
-const float kMostGain = 16.0; // at grazing angles few photons would carry much
+const float kMostGain = 16.0; // limits the power of photons at grazing angles
 
 bool finite(vec3 v) { return !any(isnan(v)) && !any(isinf(v)); }
 
