@@ -19,7 +19,7 @@ layout(set = 1, binding = 3, scalar) buffer Nodes { CutNode nodes[]; };
 
 const float kMostOfARay = 4.0; // limits the weight of a surface at a grazing angle
 
-/// The node's weight where a ray came down, times the area that it stands for, against what the node's plane would have there.
+/// The node's weight at the end of a probe ray times the area that the ray represents, relative to the node's plane.
 float covered(CutNode node, vec3 normal, Ray ray, Hit hit)
 {
     if (hit.slot == kNone)

@@ -53,7 +53,7 @@ vec3 incidentLight(vec3 irradiance, uint slot, Reflection r)
     return irradiance * max(light, vec3(0.0));
 }
 
-/// pi times the radiance that the lobe sees. @return false where no sample reaches
+/// pi times the mean radiance over the lobe. @return false where no sample reaches
 bool interpolatedLight(vec3 x, vec3 n, Reflection r, out vec3 light)
 {
     light = vec3(0.0);

@@ -12,7 +12,7 @@ layout(push_constant, scalar) uniform Params { EmitParams params; };
 
 layout(set = 1, binding = 0, scalar) readonly buffer Groups { GuideGroups groups; };
 layout(set = 1, binding = 1, scalar) readonly buffer Distribution { GuideDistribution distribution; };
-layout(set = 1, binding = 2, scalar) readonly buffer OtherLights { float other_lights[]; }; // by light: share of it and those before
+layout(set = 1, binding = 2, scalar) readonly buffer OtherLights { float other_lights[]; }; // by light: cumulative fraction of power
 layout(set = 1, binding = 3, scalar) writeonly buffer Starts { PhotonStart starts[]; };
 layout(set = 1, binding = 4, scalar) writeonly buffer Cells { uint cells[]; };
 #include "shaders/lib/guide.glsl"

@@ -48,10 +48,10 @@ uint stageAfter(uint stage, bool delta)
     return stage == kStageEye ? kStageLeft : kStageDeep;
 }
 
-/// What light found now is worth to the picture.
+/// The weight in the picture of light found now.
 vec3 countedThroughput(PathState state) { return state.throughput * state.share; }
 
-/// What part of the sample's weight went through the lobes that count.
+/// The fraction of the sample's weight that went through the lobes that count.
 vec3 countingShare(BsdfSample next)
 {
     vec3 part = params.lobes == kLobeDiffuse ? next.diffuse_weight : next.weight - next.diffuse_weight;
