@@ -2,7 +2,7 @@
 #pragma once
 #include "runtime/camera.h"
 
-/// What the person at the window asked for since the last frame.
+/// The user's input since the last frame.
 struct FlyInput
 {
     float right = 0, up = 0, forward = 0; // -1..1

@@ -1,4 +1,4 @@
-// Lights parted into suns, skies and lamps, each with a table to pick from: direct light asks them all.
+// Lights grouped into directional, environment and local ones, each group with an alias table: direct light samples every group.
 #pragma once
 #include "runtime/scene_gpu.h"
 #include "shaders/direct/direct.h"
@@ -17,7 +17,7 @@ struct LightGroup
     LightKind kind;
     uint32_t first_pick; // its part of LightGroups::picks
     uint32_t pick_count; // lights
-    float share;         // of all lights' pmf, > 0
+    float share;         // fraction of all lights' pmf, > 0
     bool one_place;      // a single punctual light: each sample of it is the same
 };
 
@@ -27,5 +27,5 @@ struct LightGroups
     std::vector<gpu::LightPick> picks;
 };
 
-/// Within a group lights are picked by their share of the group's pmf. Lights with no share are in no group.
+/// Within a group, lights are picked in proportion to their pmf. Lights of pmf 0 are in no group.
 LightGroups groupLights(std::span<const LightShare> lights);

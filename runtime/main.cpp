@@ -38,7 +38,7 @@ Status parseSize(const std::string& text, PlayerOptions& options)
     return Success{};
 }
 
-/// Everything that can be known to be wrong before work begins.
+/// Checks that need no work.
 Status checkOptions(const PlayerOptions& options)
 {
     if (!options.output.empty())

@@ -15,14 +15,14 @@ struct Rendering
     std::vector<gpu::vec3> pixels; // linear radiance, rows from the top; empty: there is none
 };
 
-/// A package's scene on the device that was asked for. Its members may be borrowed for as long as it lives.
+/// A package's scene on the selected device. Its members may be borrowed for as long as it lives.
 struct OpenedScene
 {
     Instance instance;
     std::unique_ptr<Device> device;
     std::unique_ptr<SceneGpu> scene;
     std::vector<Camera> cameras; // the package's, at least one
-    Camera camera;               // the one asked for
+    Camera camera;               // the selected one
     Settings settings;           // of the preset and --set
     Rendering against;           // of --against
 };
@@ -37,6 +37,6 @@ Result<OpenedScene> openScene(const PlayerOptions& options, std::span<const char
 Status makeRenderer(std::optional<Renderer>& renderer, const OpenedScene& opened, Mode mode, uint32_t width, uint32_t height,
                     const Settings& settings);
 
-/// Prints the summary on stderr, and writes --output and --stats where they are asked for.
+/// Prints the summary on stderr, and writes --output and --stats if given.
 Status writeResults(const PlayerOptions& options, const OpenedScene& opened, Renderer& renderer, const Settings& settings,
                     Statistics& statistics);

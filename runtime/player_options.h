@@ -1,4 +1,4 @@
-// What the command line of lumicut-play asks for.
+// The options of lumicut-play's command line.
 #pragma once
 #include "runtime/renderer.h"
 #include "runtime/settings.h"

@@ -12,7 +12,7 @@ struct LightShare // of the scene's power
     uint32_t kind; // gpu::kLight*
     float pmf;
 
-    /// Arrives from so far away that its power says nothing of how much of it is seen; else it is a lamp.
+    /// Directional or environment: its power does not tell how much of it is visible. Otherwise it is a local light.
     bool isBeam() const { return kind == gpu::kLightDirectional || kind == gpu::kLightEnvironment; }
     bool isPunctual() const { return kind < gpu::kLightTriangle; }
 };
@@ -33,7 +33,7 @@ public:
     SharedConstants constants() const { return SharedConstants(constants_); }
     /// Whether it has any of these kFeature*.
     bool hasFeature(uint32_t features) const { return (features_ & features) != 0; }
-    /// Some opaque material reflects so roughly that spherical harmonics can stand for rays (shaders/gather/harmonics.h).
+    /// Some opaque material is so rough that spherical harmonics can replace rays (shaders/gather/harmonics.h).
     bool reflectsRoughly() const { return reflects_roughly_; }
     /// Some material is a mirror over something else: glass, or a smooth layer. What textures say of it is left out.
     bool hasSmoothLayers() const { return has_smooth_layers_; }
@@ -42,7 +42,7 @@ public:
     /// Replaces what material `index` emits, W/(m^2 sr) before its texture, from the next kernel of `rec` on. Of a surface
     /// whose triangles are lights those are to be replaced too.
     void setEmission(Recorder& rec, uint32_t index, gpu::vec3 emission);
-    /// gpu::ViewScale, as every kernel sees it: of the whole scene until a ViewScaleStage sets it.
+    /// gpu::ViewScale, which every kernel can read: of the whole scene until a ViewScaleStage sets it.
     const Buffer& viewScale() const { return buffers_.back(); }
     /// Grows whenever a light or an emission is replaced: what was made under another version is out of date.
     uint64_t lightsVersion() const { return lights_version_; }

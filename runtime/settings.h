@@ -1,4 +1,4 @@
-// Every knob of the renderer once: name, default, unit, range, help. Feeds --set, --help and the user interface.
+// Every setting of the renderer, declared once: name, default, unit, range, help. --set, --help and the panel follow from it.
 #pragma once
 #include "format/result.h"
 #include "runtime/choices.h"

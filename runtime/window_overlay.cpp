@@ -25,7 +25,7 @@ WindowOverlay::WindowOverlay(const Window& window, const Instance& instance, con
     IMGUI_CHECKVERSION();
     ImGui::CreateContext();
     ImGuiIO& io = ImGui::GetIO();
-    io.IniFilename = nullptr; // the player leaves no files behind that nobody asked for
+    io.IniFilename = nullptr; // write no layout file
     io.FontGlobalScale = window.contentScale();
     ImGui::GetStyle().ScaleAllSizes(window.contentScale());
     ImGui_ImplGlfw_InitForVulkan(window.handle(), true); // calls the window's own callbacks too

@@ -22,5 +22,5 @@ struct PanelActions
     bool restart = false;         // the samples so far show something else
 };
 
-/// Draws the panel and changes `settings` and `mode` as the person says. Inside an ImGui frame only.
+/// Draws the panel and changes `settings` and `mode` by the user's input. Inside an ImGui frame only.
 PanelActions drawPanel(const PanelFacts& facts, Settings& settings, Mode& mode);

@@ -45,13 +45,17 @@ for program in "$@"; do
     for command in $(awk '/^Subcommands:/ { on = 1; next } on && NF { print $1 }' <<<"$help"); do
         help+=$'\n'$("$program" "$command" --help)
     done
-    listed=$(grep -oE '^ +(-[a-z],)?--[a-z-]+' <<<"$help" | grep -oE -- '--[a-z-]+' | sort -u)
+    # A line each: "--ghost --no-ghost" is one option.
+    listed=$(grep -oE '^ +-[^ ]+' <<<"$help" | sed -E 's/\{[^}]*\}//g; s/[ ,]+/ /g' | grep -e -- | sort -u)
     [[ -n $listed ]] || complain "$name --help lists no options"
-    for option in $listed; do
-        options+="$option "
-        [[ $option == --help || $option == --version || $cli == *"$option"[^a-z-]* ]] ||
-            complain "docs/cli.md does not name $option of $name"
-    done
+    while read -r names; do
+        named=0
+        for option in $(grep -oE -- '--[a-z-]+' <<<"$names"); do
+            options+="$option "
+            [[ $option != --help && $option != --version && $cli != *"$option"[^a-z-]* ]] || named=1
+        done
+        ((named)) || complain "docs/cli.md does not name $names of $name"
+    done <<<"$listed"
 done
 for option in $(grep -oE -- '(^|[^a-z-])--[a-z][a-z-]+' docs/cli.md | grep -oE -- '--[a-z-]+' | sort -u); do
     [[ $options == *" $option "* ]] || complain "docs/cli.md names $option, which no program has"

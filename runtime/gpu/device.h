@@ -1,4 +1,4 @@
-// The chosen device: makes kernels, buffers and images, and brings data in.
+// The selected device: creates kernels, buffers and images, and uploads data.
 #pragma once
 #include "format/result.h"
 #include "runtime/gpu/instance.h"
@@ -24,7 +24,7 @@ public:
     Device& operator=(const Device&) = delete;
 
     /// "samples/assign" is shaders/samples/assign.comp. Aborts where there is no such kernel.
-    /// A kernel asked for again with the same constants is the same one.
+    /// Kernels are cached: the same name and constants give the same one.
     /// @param constants of the kernel; others keep the value in the shader. Aborts where the kernel does not use one of them.
     Kernel kernel(std::string_view name, std::initializer_list<Constant> constants = {}) const { return kernel(name, SharedConstants(), constants); }
     /// @param shared of which the kernel takes those it uses. Aborts where no kernel at all uses one of them.

@@ -1,4 +1,4 @@
-// The whole GPU layer as the stages see it: Device, Buffer, Kernel, Recorder.
+// The GPU layer that stages use: Device, Buffer, Kernel, Recorder.
 #pragma once
 #include "runtime/gpu/device.h"
 #include "runtime/gpu/recorder.h"

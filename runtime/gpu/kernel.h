@@ -1,4 +1,4 @@
-// A compute pipeline and what its SPIR-V says of itself, known since build time.
+// A compute pipeline and the reflection of its SPIR-V, made at build time.
 #pragma once
 #include "runtime/gpu/vulkan.h"
 

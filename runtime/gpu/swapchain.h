@@ -2,7 +2,7 @@
 #pragma once
 #include "runtime/gpu/device.h"
 
-/// One frame is in flight at most: whoever records waits for a frame before the next acquire().
+/// One frame is in flight at most: the caller waits for a frame before the next acquire().
 class Swapchain
 {
 public:

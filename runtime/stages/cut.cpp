@@ -142,7 +142,7 @@ CutStage::Output CutStage::record(Recorder& rec, const RayStage& rays, const Pho
 void CutStage::recordProbes(Recorder& rec, const RayStage& rays, const Input& in) const
 {
     const gpu::ProbeParams params{.ray_count = in.probes, .rim_count = in.rim_probes, .seed = in.seed};
-    rays.reset(rec, probes_.size); // an empty cut starts no thread that would say so
+    rays.reset(rec, probes_.size); // an empty cut starts no thread that would set it
     rec.runIndirect(probe_, size_, params,
                     {{"Size", size_},
                      {"Nodes", nodes_},

@@ -1,4 +1,4 @@
-// The illumination cut: a set of photon-tree nodes, one above every photon, whose irradiance stands for the whole map.
+// The illumination cut: a set of photon-tree nodes, one above every photon, whose irradiance represents the whole map.
 #pragma once
 #include "runtime/stages/photon_tree.h"
 #include "shaders/cut/cut.h"
@@ -24,10 +24,10 @@ public:
         float difference;      // Delta_E, relative
         uint32_t photon_count; // k of density estimation
         float radius;          // of density estimation at most: of the distance from the viewer
-        float shrink;    // of the nodes' supports, <= 1: in a standing picture they may be as noisy as they are sharp
+        float shrink;    // of the nodes' supports, <= 1: in a static view noise averages out, so that they may be sharp
         uint32_t fewest = gpu::kCutFewest; // photons of a node that is not divided further: less where supports have shrunk
-        uint32_t probes; // coverage probe rays of a node; 0: it is taken for a plane without walls
-        uint32_t rim_probes = 0; // rays besides that say where a lookup need not ask what is seen: they pay where lookups are many
+        uint32_t probes; // coverage probe rays of a node; 0: its surroundings are assumed to be a plane without walls
+        uint32_t rim_probes = 0; // additional rays that find nodes whose lookups need no visibility ray: worth it where lookups are many
         uint32_t seed;
         bool operator==(const Input&) const = default; // equal input over one map gives one cut
     };

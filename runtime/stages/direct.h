@@ -1,4 +1,4 @@
-// Direct light at the shading points: shadow rays to sampled suns, skies and lamps, combined with BSDF-sampled rays.
+// Direct light at the shading points: shadow rays to sampled lights, combined with BSDF-sampled rays.
 #pragma once
 #include "runtime/light_groups.h"
 #include "runtime/stages/rays.h"
@@ -15,13 +15,13 @@ public:
         const Buffer& radiance; // vec3[point_count], grows by the direct light
         const Buffer& noisy;    // likewise, by what is left to chance of it; may be `radiance`
         uint32_t point_count;
-        uint32_t light_sample_count; // per point, for suns, skies and lamps each
-        uint32_t candidate_count;    // light samples of which one gets its shadow ray
+        uint32_t light_sample_count; // per point, for directional, environment and local lights each
+        uint32_t candidate_count;    // light samples of which one is chosen for the shadow ray
         uint32_t first_sample;
         uint32_t seed;
     };
     void record(Recorder& rec, const RayStage& rays, const Input& in) const;
-    bool isNoisy() const { return is_noisy_; } // else a frame leaves nothing to chance
+    bool isNoisy() const { return is_noisy_; } // otherwise direct light is exact in every frame
 
 private:
     void recordSample(Recorder& rec, const RayStage& rays, const Input& in, uint32_t light_sample) const;

@@ -1,5 +1,5 @@
-// Final gathering: rays by the hundreds from every irradiance sample, or a few from every pixel of a standing picture, read
-// the illumination cut where they end.
+// Final gathering: hundreds of rays from every irradiance sample, or a few from every pixel of a static view, read the
+// illumination cut where they end.
 #pragma once
 #include "runtime/stages/cut.h"
 #include "runtime/stages/guide.h"
@@ -23,14 +23,14 @@ public:
         uint32_t photon_count;   // k, in CutMode::kKnn
         float radius;            // of density estimation at most, in CutMode::kKnn: of the distance from the viewer
         uint32_t seed;
-        const LegsStage* legs = nullptr; // that say where light comes from; null: rays go by the cosine alone
+        const LegsStage* legs = nullptr; // path segments by which rays are aimed; null: rays are cosine-distributed
         bool by_direction = false; // whether harmonics() is wanted; only in scenes with rough reflection
     };
-    /// Only tells `guide` where the samples' rays end.
+    /// Traces the samples' rays to their first hits, and only splats these into `guide`.
     void look(Recorder& rec, const RayStage& rays, const SamplesStage::Output& samples, const Input& in,
               GuideStage& guide) const;
-    /// Sets irradiance and harmonic of samples.samples. @param guide if not null is told
-    /// where rays end
+    /// Sets irradiance and harmonic of samples.samples. @param guide if not null, the ends of
+    /// rays are splatted into it
     void record(Recorder& rec, const RayStage& rays, const SamplesStage::Output& samples,
                 const PhotonTreeStage::Output& map, const CutStage::Output& cut, const Input& in,
                 GuideStage* guide = nullptr) const;
@@ -40,12 +40,12 @@ public:
         const Buffer& points;   // gpu::ShadingPoint[point_count]
         const Buffer& radiance; // vec3[point_count], grows by the indirect diffuse light
         uint32_t point_count;
-        uint32_t frame; // in a standing picture: its rays continue those of the frames before
+        uint32_t frame; // in a static view: its rays continue those of the frames before
         uint32_t seed;  // of the picture
     };
     /// Rays of every pixel that cost as much as those of the samples; at least one, which may cost more.
     uint32_t raysPerPixel(uint32_t pixel_count) const { return std::clamp(max_rays_ / pixel_count, 1u, kMostPixelRays); }
-    /// Whether that is worth while: else a picture takes many passes, as there is room for so few rays.
+    /// Whether that is efficient: otherwise a picture needs many passes, as the ray buffers are small.
     bool suitsPixels(uint32_t pixel_count) const { return uint64_t(max_rays_) * kMostPasses >= pixel_count; }
     /// Indirect diffuse light without samples and interpolation: noise, and no blur but that of the cut.
     void recordPixels(Recorder& rec, const RayStage& rays, const PhotonTreeStage::Output& map, const CutStage::Output& cut,

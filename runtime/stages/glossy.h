@@ -20,8 +20,8 @@ public:
         uint32_t first_sample;
         uint32_t specular_depth; // most delta events of a ray
         uint32_t seed;
-        float sure_reflectance; // what reflects this much sends a ray from every pixel, what reflects less a part of them
-        bool shared = false; // whether recordHarmonics() has said what part of the light is there already
+        float sure_reflectance; // Russian-roulette threshold: surfaces that reflect less trace a ray from some of their pixels
+        bool shared = false; // whether recordHarmonics() has computed a part of the light
     };
     void record(Recorder& rec, const RayStage& rays, const CutStage::Output& cut, const Input& in) const;
 

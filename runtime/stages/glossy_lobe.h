@@ -1,4 +1,4 @@
-// The rough reflection lobe as a few numbers: what reflection by spherical harmonics needs to know of it.
+// Parameters of the rough reflection lobe for reflection by spherical harmonics.
 #pragma once
 #include "shaders/gather/harmonics.h"
 
@@ -7,7 +7,7 @@
 /// The GGX lobe (glTF 2.0, appendix B) of a roughness, seen at `cosine` from the normal; by numeric integration.
 /// Direction and concentration are those with which light times cosine times the zonal function has the mean direction that it
 /// has with the BRDF (without its Fresnel factor): even light, and light that rises evenly along any axis, is then reflected
-/// right. Of two bodies of light that differ in higher bands it says less, the sharper the lobe.
+/// right. The sharper the lobe, the larger its error for light of higher bands.
 /// @param roughness >= 0.1, @param cosine 0 to 1
 gpu::GlossyLobe glossyLobe(double roughness, double cosine);
 

@@ -5,9 +5,9 @@
 
 namespace
 {
-constexpr uint32_t kManyLights = 4; // from here on some of them may be out of sight; a lamp of two triangles is two
+constexpr uint32_t kManyLights = 4; // from here on some of them may be hidden; a quad lamp is two triangles, hence two lights
 
-/// Fixed-point digits of the scores: as many as a cell that all photons leave by cannot overflow.
+/// Scale of the fixed-point scores: as large as possible without overflow in a cell that all photons leave from.
 float scoreScale(uint32_t photon_count)
 {
     constexpr double kMostWeight = gpu::kGuideGroups / double(gpu::kGuideUnguided), kMostScale = 16;
@@ -19,7 +19,7 @@ float scoreScale(uint32_t photon_count)
 struct GuidedLights
 {
     gpu::GuideGroups groups{};
-    std::vector<float> other_lights; // by light: share of power of it and those before it, beams with a group left out
+    std::vector<float> other_lights; // cumulative fraction of power by light, without those that have a group of their own
 };
 
 GuidedLights groupsOf(std::span<const LightShare> lights)

@@ -1,6 +1,6 @@
-// Guided emission: learns which photons fall where gathering rays look, so that the next ones are not wasted on the
-// roof. After projection maps (Jensen 2001, 5.3), learned rather than drawn; every photon's power is divided by the
-// change of its probability, so that the map stays unbiased whatever was learned.
+// Photon guiding: learns from which cells of the lights photons fall where gathering rays end, and emits the next ones there.
+// After projection maps (Jensen 2001, 5.3), learned rather than rasterized; every photon's power is divided by the change of
+// its probability, so that the map stays unbiased whatever was learned.
 #pragma once
 #include "runtime/stages/rays.h"
 #include "runtime/stages/stored_photons.h"
@@ -9,7 +9,7 @@
 class GuideStage
 {
 public:
-    /// Whether there is something to learn: a beam as wide as the scene, or many lights.
+    /// Whether guiding is useful: with a directional or environment light, or many lights.
     static bool helps(const SceneGpu& scene);
 
     GuideStage(const Device& device, const SceneGpu& scene, uint32_t max_paths);
@@ -26,9 +26,9 @@ public:
     /// `params.path_count` photons leave the lights by what was learned. @param starts gpu::PhotonStart[path_count]
     void emit(Recorder& rec, const Buffer& starts, const gpu::EmitParams& params) const;
 
-    /// Says where light is wanted from now on: where these rays ended.
+    /// Splats the ends of these rays into the importance map, which is cleared before.
     /// @param hits gpu::Hit[queue capacity]
-    /// @param more whether it is wanted, too, where the rays of the last mark() ended
+    /// @param more whether the splats of the last call are kept
     void mark(Recorder& rec, const RayQueue& queue, uint32_t max_rays, const Buffer& hits, bool more = false);
     /// Learns from the photons of the last emit().
     void learn(Recorder& rec, const StoredPhotons& map);

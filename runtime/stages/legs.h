@@ -1,4 +1,4 @@
-// Legs of photons' paths: light on its way from one surface to another. Gathering rays are aimed by those that arrived nearby.
+// Segments (legs) of photons' paths from one surface to another. Gathering rays are aimed along those that arrived nearby.
 #pragma once
 #include "runtime/stages/stored_photons.h"
 #include "shaders/legs/legs.h"
@@ -8,7 +8,7 @@ class LegsStage
 public:
     explicit LegsStage(const Device& device);
 
-    /// Takes kLegCount legs from a map, in proportion to their power.
+    /// Samples kLegCount legs of a map in proportion to their power.
     void record(Recorder& rec, const StoredPhotons& map, uint32_t seed) const;
     /// gpu::Leg[kLegCount] of the last record()
     const Buffer& legs() const { return legs_; }

@@ -24,8 +24,8 @@ public:
         uint32_t path_count; // photons to emit, <= max_paths
         uint32_t first_path; // index of path 0 in the sequence of all frames
         uint32_t seed;
-        const GuideStage* guide = nullptr;    // says how photons leave; of Kind::kGlobal only
-        uint32_t bounce_limit = gpu::kNone;   // photons that a path may store; a limit takes light away: for looking at the first
+        const GuideStage* guide = nullptr;    // the emission distribution; of PhotonKind::kGlobal only
+        uint32_t bounce_limit = gpu::kNone;   // photons that a path may store; a limit loses power: for tests of the first bounces
         bool operator==(const Input&) const = default; // equal input under equal lights gives equal photons
     };
     using Output = StoredPhotons;

@@ -7,11 +7,11 @@
 #include <optional>
 #include <string_view>
 
-// In all of them `size` is a gpu::QueueSize whose .count the kernels read (its .groups is not looked at); a count above
+// In all of them `size` is a gpu::QueueSize whose .count the kernels read (its .groups is not read); a count above
 // max_count counts as max_count. Where work is divided, lower indices belong to lower workers, so that the results do
 // not depend on the order in which workers run: equal input gives equal bits.
 
-/// Who takes a share of the work: a workgroup, tile by tile in shared memory, or a single thread, which is faster where
+/// The unit that processes a part of the work: a workgroup, tile by tile in shared memory, or a single thread, which is faster where
 /// threads run one after the other.
 enum class Workers
 {

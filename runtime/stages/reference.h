@@ -1,4 +1,4 @@
-// The truth: an unbiased progressive path tracer in wavefronts.
+// The reference: an unbiased progressive path tracer in wavefronts.
 #pragma once
 #include "runtime/stages/rays.h"
 #include "shaders/lib/terms.h"

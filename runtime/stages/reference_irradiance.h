@@ -1,4 +1,4 @@
-// The truth about irradiance samples: what they should have gathered, by path tracing. For measurements, not for frames.
+// Reference irradiance of irradiance samples, by path tracing. For measurements, not for frames.
 #pragma once
 #include "runtime/stages/reference.h"
 #include "shaders/gather/gather.h"

@@ -1,4 +1,4 @@
-// A binary tree over spheres, built on the GPU: the one tree of photons, cut nodes, cluster centres and samples.
+// A binary tree over spheres, built on the GPU, for photons, cut nodes, cluster centres and samples.
 #pragma once
 #include "runtime/gpu/gpu.h"
 #include "runtime/scene_gpu.h"

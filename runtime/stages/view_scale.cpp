@@ -13,7 +13,7 @@ ViewScaleStage::ViewScaleStage(const Device& device, const SceneGpu& scene)
 void ViewScaleStage::record(Recorder& rec, const Buffer& points, uint32_t point_count,
                             const gpu::CameraParams& camera) const
 {
-    // An orthographic camera stands anywhere: what it shows is as large as its picture.
+    // An orthographic camera may be at any distance: the scale is the size of its picture.
     const gpu::vec3 r = camera.right, u = camera.up;
     const float side = std::sqrt(r.x * r.x + r.y * r.y + r.z * r.z) + std::sqrt(u.x * u.x + u.y * u.y + u.z * u.z);
     const gpu::MeasureParams params{.focus = camera.position,

@@ -9,7 +9,7 @@ inline bool isDisplayReferred(uint32_t view)
 {
     return view != gpu::kViewNone && view != gpu::kViewIrradiance;
 }
-/// Whether a view says something of one frame only: colours of indices mean nothing on average.
+/// Whether a view shows a single frame: colours of indices cannot be averaged.
 inline bool showsOneFrame(uint32_t view)
 {
     return isDisplayReferred(view) && view != gpu::kViewNonFinite && view != gpu::kViewError;
@@ -42,7 +42,7 @@ public:
     void recordCut(Recorder& rec, const Input& in, const CutStage::Output& cut) const;            // kViewCut
 
 private:
-    // Kernels are made when a view is first asked for: start-up does not pay for what most never look at.
+    // Kernels are created when a view is first used, so that start-up does not pay for them.
     Kernel kernel(std::string_view name) const { return device_.kernel(name); }
     Kernel surfaceKernel(std::string_view name) const { return device_.kernel(name, scene_.constants()); }
     void markSamples(Recorder& rec, const gpu::ViewParams& params, const SamplesStage::Output& samples) const;

@@ -5,11 +5,11 @@
 #include "shaders/lib/trace.glsl"
 #include "shaders/lib/climb.glsl"
 
-// The coarse cut, bottom-up: a node is divided where something below it is, where E~ would mean nothing (its photons face apart,
-// lie on different planes or on different sides of a wall), and where they lie unevenly. What is not divided, but below a divided
-// node, is the cut: every photon then has exactly one of its ancestors, or itself, in it. Algorithm 3 divides where both children
-// are brighter than E_min: that makes small nodes wherever it is bright, however even, and nodes as large as walls in a dim room
-// beside a bright one. One thread per photon.
+// The coarse cut, bottom-up: a node is divided if a node below it is, if E~ is meaningless (its photons face apart, lie on different
+// planes or on different sides of a wall), or if their density is not uniform. The undivided children of divided nodes are the cut:
+// every photon has exactly one of its ancestors, or itself, in it. Algorithm 3 divides where both children are brighter than E_min:
+// that makes small nodes wherever it is bright, however uniform, and nodes as large as walls in a dim room beside a bright one.
+// One thread per photon.
 
 layout(local_size_x = kCutGroupSize) in;
 layout(push_constant, scalar) uniform Params { CutParams params; };
@@ -27,7 +27,7 @@ layout(set = 1, binding = 8, scalar) writeonly buffer Ids { QueueSize ids; };   
 
 bool isDivided(uint child) { return (child & kTreeLeafBit) == 0u && divided[child] != 0u; }
 
-/// Whether something stands between the halves of a node: it holds photons of two rooms.
+/// Whether the halves of a node are mutually occluded: it holds photons of two rooms.
 bool isWalled(PhotonNode node, uint left, uint right)
 {
     vec3 a = photonNode(childId(left)).center, b = photonNode(childId(right)).center;

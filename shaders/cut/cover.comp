@@ -4,8 +4,8 @@
 #include "shaders/lib/cut_node.glsl"
 #include "shaders/lib/surface.glsl"
 
-// Gives a node at an edge, in a corner, at a wall or on a thin column the light that it would spread beside the surface or
-// behind the wall: its irradiance is divided by the part of its disc that is there and seen. One thread per node.
+// Divides a node's irradiance by the fraction of its disc that lies on the surface and is visible, so that at edges, corners,
+// walls and thin columns no power is spread beside the surface or behind the wall. One thread per node.
 
 layout(local_size_x = kCutGroupSize) in;
 layout(push_constant, scalar) uniform Params { ProbeParams params; };
@@ -17,9 +17,9 @@ layout(set = 1, binding = 3, scalar) buffer Nodes { CutNode nodes[]; };
 #include "shaders/lib/hit.glsl"
 #include "shaders/lib/ray.glsl"
 
-const float kMostOfARay = 4.0; // a surface aslant counts for no more than this much of the plane
+const float kMostOfARay = 4.0; // limits the weight of a surface at a grazing angle
 
-/// The node's weight where a ray came down, times the area that it stands for, against what the node's plane would have there.
+/// The node's weight at the end of a probe ray times the area that the ray represents, relative to the node's plane.
 float covered(CutNode node, vec3 normal, Ray ray, Hit hit)
 {
     if (hit.slot == kNone)
@@ -60,7 +60,7 @@ void main()
     bool is_clear = probes.rim_count > 0u && sum > float(probes.ray_count) - 0.5;
     for (uint k = rim; is_clear && k < rim + probes.rim_count; ++k)
         is_clear = loadHit(k).slot == kNone;
-    if (is_clear) // all of its disc is there and seen: nobody need ask
+    if (is_clear) // all of its disc is on the surface and visible: lookups need no visibility ray
         nodes[i].normal_and_eye |= kCutIsClear;
     else
         nodes[i].irradiance *= inverseMean(float(probes.ray_count), sum, squares);

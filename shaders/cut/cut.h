@@ -15,8 +15,8 @@ struct PhotonSums // over the photons of an inner node
     float weight;   // sum of luminances
     vec3 position;  // luminance-weighted sum of the photons' positions
     float squares;  // sum of squared luminances
-    vec3 normal;    // sum of the photons' normals, all alike: weighed by power, a bright photon would hide dim ones
-    vec3 mean;      // of their positions, all alike
+    vec3 normal;    // sum of the photons' normals, unweighted: weighted by power, a bright photon would hide dim ones
+    vec3 mean;      // of their positions, unweighted
     vec3 spread;    // sums of xx, yy, zz of their positions from the mean
     vec3 spread_off; // likewise of xy, xz, yz
 };
@@ -25,7 +25,7 @@ GPU_SIZE(PhotonSums, 80);
 struct CutNode // one node of the cut: what light falls on the surface around its centre
 {
     vec3 center;     // metres: power-weighted mean of its photons
-    float support;   // metres: how far from the centre it counts
+    float support;   // metres: influence radius
     vec3 irradiance; // W/m^2: what its photons give at its centre, falling to 0 at its support; E_p in mode kCutNearest
     uint normal_and_eye; // see lib/cut_node.glsl
 };
@@ -39,7 +39,7 @@ GPU_SIZE(CutNode, 32);
 GPU_CUT_MODES(GPU_CHOICE_CONSTANT)
 
 GPU_CONST uint kCutGroupSize = 64u;
-GPU_CONST uint kCutFewest = 8u;        // photons of a node that say something of their density
+GPU_CONST uint kCutFewest = 8u;        // photons from which a density can be estimated
 // Of the photons of a density estimate a node of the refined cut holds this many times as many at most: larger ones blur more
 // than the estimate would (a box of white walls read 2 % too dark where nodes were as large as chance allowed).
 GPU_CONST uint kCutMost = 2u;
@@ -57,7 +57,7 @@ GPU_CONST float kProbeHeight = 0.2f;
 // 7 bits, 0 where the disc is seen from infinitely far; and kCutIsClear.
 GPU_CONST uint kCutNormalBits = 12u;
 GPU_CONST uint kCutEyeSteps = 127u;
-GPU_CONST uint kCutIsClear = 0x80000000u; // all of the disc is there and seen: a lookup need not ask
+GPU_CONST uint kCutIsClear = 0x80000000u; // all of the disc is on the surface and visible: a lookup needs no visibility ray
 
 struct RepresentParams
 {
@@ -68,8 +68,8 @@ GPU_SIZE(RepresentParams, 8);
 
 struct ProbeParams
 {
-    uint ray_count; // that a node wants
-    uint rim_count; // rays besides to the rim of its disc: where all arrive, nothing stands on it
+    uint ray_count; // of a node
+    uint rim_count; // additional rays to the rim of its disc: if all arrive, nothing stands on it
     uint seed;
 };
 GPU_SIZE(ProbeParams, 12);
@@ -83,7 +83,7 @@ struct CutParams
     float radius;      // of the density estimation at most: of the distance from the viewer
     float spread;      // a node's support, in radii of the density estimation at its centre
     uint fewest;       // photons of a node that is not divided further
-    uint most_nodes;   // that there are probes for: the more photons, the more of them share a node
+    uint most_nodes;   // for which there are probe rays: with more photons, nodes hold more of them
 };
 GPU_SIZE(CutParams, 32);
 

@@ -3,7 +3,7 @@
 #extension GL_EXT_scalar_block_layout : require
 #include "shaders/cut/cut.h"
 
-// The finest cut: every selected node as it is. Its support is that of as many photons as density estimation takes, if they
+// The finest cut: every selected node, unrefined. Its support is that of as many photons as density estimation takes, if they
 // lie as evenly as those of the nearest node above it that has more than kCutFewest: no search. One thread per node.
 
 layout(local_size_x = kCutGroupSize) in;

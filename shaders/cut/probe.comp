@@ -4,9 +4,9 @@
 #include "shaders/lib/cut_node.glsl"
 #include "shaders/lib/random.glsl"
 
-// Coverage probe rays of every node of the cut: from a point above its centre to places on its disc chosen by the weight that
-// the node has there. They end where the disc lies on a surface that is seen from there. Others go to the disc's rim: they say
-// whether anything stands on it at all. One thread per node.
+// Coverage probe rays of every node of the cut: from a point above its centre to points on its disc, chosen by the node's weight
+// there. They end where the disc lies on a visible surface. Others go to the disc's rim and detect whether anything stands on
+// it. One thread per node.
 
 layout(local_size_x = kCutGroupSize) in;
 layout(push_constant, scalar) uniform Params { ProbeParams params; };
@@ -43,7 +43,7 @@ void main()
                                       frame * to_place / distance, i * all + k);
     }
     float turn = toUnitFloat(hash(params.seed, ~i));
-    for (uint k = 0u; k < probes.rim_count; ++k) // just above the rim: a bump of the floor is no wall
+    for (uint k = 0u; k < probes.rim_count; ++k) // just above the rim: a bump of the floor must not count as a wall
     {
         float phi = 2.0 * kPi * (float(k) + turn) / float(probes.rim_count);
         vec3 to_rim = vec3(cos(phi) * node.support, sin(phi) * node.support, -0.95 * height);

@@ -47,7 +47,7 @@ void main()
     DensityEstimate estimate = DensityEstimate(vec3(0.0), 0.0);
     if (!is_last || params.mode == kCutNearest)
     {
-        // Half as many again, so that one look mostly suffices.
+        // Half as many again, so that one search mostly suffices.
         estimate = estimateIrradiance(node.center, node.normal, size.count, params.photon_count, square(reachAt(node.center, params)),
                                       1.5 * square(even));
         float exact = luminance(estimate.irradiance);
@@ -59,7 +59,7 @@ void main()
         }
     }
     members[id] = 1u;
-    // A larger node covers at least itself; few photons far apart say little of what lies between them.
+    // A larger node covers at least itself; few photons far apart do not determine the density between them.
     float reach = node.count > kCutFewest ? max(node.longest, even) : even;
     finals[id] = spreadNode(id, node, params.spread * reach);
     if (params.mode == kCutNearest)

@@ -6,10 +6,10 @@
 #include "shaders/lib/cut_node.glsl"
 #include "shaders/lib/random.glsl"
 
-// What every node of the cut needs beside its power: the direction of one of its photons, chosen by power, so that on average
-// over nodes and frames each photon counts for what it carries (Walter et al. 2005, representative lights), and the point from
-// which its disc is seen. The mean of photons around a column, or on both sides of a wall's foot, lies inside it: such a node
-// is centred on the chosen photon. One thread per node.
+// Samples the direction of every node of the cut: that of one of its photons, chosen with probability proportional to power, so
+// that the expectation over nodes and frames is correct (Walter et al. 2005, representative lights). Also sets the point from
+// which its disc is tested for visibility. The mean of photons around a column, or on both sides of a wall's foot, lies inside
+// it: such a node is centred on the chosen photon. One thread per node.
 
 layout(local_size_x = kCutGroupSize) in;
 layout(push_constant, scalar) uniform Params { RepresentParams params; };

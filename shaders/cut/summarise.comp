@@ -4,7 +4,7 @@
 #include "shaders/cut/cut.h"
 #include "shaders/lib/climb.glsl"
 
-// Power, normal and position sums of every inner node, from the photons up: whoever arrives second at a node goes on with
+// Sums of power, normal and position of every inner node, bottom-up: the thread that arrives second at a node continues with
 // it. One thread per photon.
 
 layout(local_size_x = kCutGroupSize) in;
@@ -42,7 +42,7 @@ void main()
         else
             other = sums[index];
         uint other_count = leaf ? 1u : loadTreeNode(index).count;
-        // The left child first: equal bits whoever arrives second.
+        // The left child first: equal bits in any order of arrival.
         if ((link & kTreeLeafBit) != 0u)
             total = joined(other, other_count, total, count);
         else

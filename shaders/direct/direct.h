@@ -34,12 +34,12 @@ GPU_SIZE(DirectParams, 44);
 struct EmittedParams
 {
     uint seed;
-    float sky_density; // with which one candidate finds a direction, over the density of all lights together
+    float sky_density; // of one candidate's direction, over the density of all lights together
     float lamp_density;
 };
 GPU_SIZE(EmittedParams, 12);
 
-struct EmitterRay // what a BSDF-sampled ray is worth if it ends on an emitter
+struct EmitterRay // the weight of a BSDF-sampled ray that ends on an emitter
 {
     vec3 throughput; // f cos / pdf x the chain's throughput / light_sample_count
     float pdf;       // per steradian

@@ -5,9 +5,8 @@
 #include "shaders/lib/lights.glsl"
 #include "shaders/lib/trace.glsl"
 
-// Adds what BSDF-sampled rays find when they end on an emitter or in the sky, thin walls in between included, since
-// shadow rays go through them too. One thread per ray of the queue; at most one ray a point, so the sum does not depend on
-// thread order.
+// Adds the emission at the ends of BSDF-sampled rays that hit an emitter or the environment, also through thin walls, as shadow
+// rays pass them, too. One thread per ray of the queue; at most one ray a point, so the sum does not depend on thread order.
 
 layout(local_size_x = kRaysGroupSize) in;
 layout(push_constant, scalar) uniform Params { EmittedParams params; };

@@ -5,9 +5,9 @@
 #include "shaders/lib/lights.glsl"
 #include "shaders/lib/path.glsl"
 
-// Asks for direct light at every shading point: a shadow ray to a light of the group, and, once for all groups, a ray chosen
-// by the BSDF that may end on an emitter (emitted.comp weighs it). The light is chosen among candidates picked by power, each
-// as often as it would light the point if nothing were in the way (Talbot et al. 2005, "Importance Resampling for Global
+// Samples direct light at every shading point: a shadow ray to a light of the group, and, once for all groups, a BSDF-sampled
+// ray that may end on an emitter (emitted.comp weights it). The light is chosen among candidates picked by power, with
+// probability proportional to its unoccluded contribution (Talbot et al. 2005, "Importance Resampling for Global
 // Illumination"). One thread per point; queues hold one ray a point at most.
 
 layout(local_size_x = kRaysGroupSize) in;

@@ -3,7 +3,7 @@
 #extension GL_EXT_scalar_block_layout : require
 #include "shaders/gather/gather.h"
 
-// Adds to every pixel of a band what its own rays have brought. One thread per pixel.
+// Adds the results of its own rays to every pixel of a band. One thread per pixel.
 
 layout(local_size_x = kRaysGroupSize) in;
 layout(push_constant, scalar) uniform Params { PixelGatherParams params; };

@@ -14,7 +14,7 @@ struct GatherState // of a ray between two links of its specular chain
 };
 GPU_SIZE(GatherState, 20);
 
-struct Gathered // what one ray brought
+struct Gathered // the result of one ray
 {
     vec3 radiance;
     float nearness; // 1 / metres to its first surface, times the weight of a sample's ray; 0: none
@@ -40,7 +40,7 @@ struct GatherParams
     uint mode;        // kCut*
     uint photon_count; // k, in mode kCutKnn
     float radius;     // of density estimation at most, in mode kCutKnn: of the distance from the viewer
-    uint leg_count;   // that say where light comes from: all of them, or 0
+    uint leg_count;   // for aiming: all legs, or 0
 };
 GPU_SIZE(GatherParams, 32);
 

@@ -18,7 +18,7 @@ layout(set = 1, binding = 5, scalar) writeonly buffer States { GatherState state
 layout(set = 1, binding = 6, scalar) readonly buffer Legs { Leg legs[]; };
 layout(set = 1, binding = 7, scalar) writeonly buffer Directions { uint directions[]; }; // octahedral, by ray
 
-/// Counts by cell what the legs bring to x.
+/// Sums by cell the light that the legs bring to x.
 void countLegs(vec3 x, vec3 normal, mat3 frame, uint thread)
 {
     const uint kEach = kLegCount / kRaysGroupSize;

@@ -11,7 +11,7 @@ GPU_CONST uint kHarmonicsCount = 16u; // coefficients of a channel
 // What is projected is L(w) cos(w, n), radiance times cosine, not radiance: rays come by the density cos/pi, and dividing by
 // it would give a ray near the horizon any weight (the variance of radiance's own coefficients is infinite), while the BRDF's
 // integral wants the cosine anyhow. It also leaves no edge at the horizon for so few bands to ring at. Band 0 is then the
-// irradiance E, which Sample has. The others are kept as shares of it,
+// irradiance E, which Sample has. The others are stored relative to it,
 //   h_lm = 1/E Int L(w) cos(w, n) B_lm(w) dw,    B_lm = sqrt(4 pi / (2 l + 1)) Y_lm,
 // which lie in [-1, 1] for |B_lm| <= 1 and L >= 0: a byte holds one.
 struct SampleHarmonics

@@ -15,7 +15,7 @@ layout(set = 1, binding = 1, scalar) readonly buffer GatheredBlock { Gathered ga
 layout(set = 1, binding = 2, scalar) writeonly buffer Harmonics { SampleHarmonics harmonics[]; };
 layout(set = 1, binding = 4, scalar) readonly buffer Directions { uint directions[]; }; // octahedral, by ray
 
-shared float basis[kRaysGroupSize][kHarmonicsCount]; // the last is 1: the sum that the others are shares of
+shared float basis[kRaysGroupSize][kHarmonicsCount]; // the last is 1: the sum that the others are relative to
 shared float light[kRaysGroupSize][3];
 shared float sums[3u * kHarmonicsCount];
 

@@ -4,8 +4,8 @@
 #include "shaders/glossy/glossy.h"
 #include "shaders/lib/path.glsl"
 
-// A ray from every shading point with a rough specular lobe, chosen by that lobe. Faint reflections send a ray now and
-// then only (Russian roulette). One thread per pixel; one ray a pixel at most.
+// A ray from every shading point with a rough specular lobe, sampled by that lobe. Faint reflections are subject to Russian
+// roulette. One thread per pixel; one ray a pixel at most.
 
 layout(local_size_x = kRaysGroupSize) in;
 layout(push_constant, scalar) uniform Params { GlossyParams params; };

@@ -13,8 +13,8 @@ struct GlossyParams
     uint seed;
     uint depth;        // delta events before this one
     uint depth_limit;
-    uint shared_; // 1: Shares says which part of the light is there already
-    float sure_reflectance; // from here on every pixel sends its ray
+    uint shared_; // 1: Shares holds the fraction of the light that is there already
+    float sure_reflectance; // Russian-roulette threshold: from here on every pixel sends its ray
 };
 GPU_SIZE(GlossyParams, 32);
 

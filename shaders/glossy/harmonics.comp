@@ -6,8 +6,8 @@
 #include "shaders/lib/path.glsl"
 #include "shaders/lib/tile.glsl"
 
-// What rough lobes reflect of the light around a shading point, from the spherical harmonics of the irradiance samples whose
-// support holds it, with the weights of interpolation. One thread per pixel.
+// Reflection of rough lobes at a shading point, from the spherical harmonics of the irradiance samples whose support contains
+// it, with the weights of interpolation. One thread per pixel.
 
 layout(local_size_x = kRaysGroupSize) in;
 layout(push_constant, scalar) uniform Params { GlossyParams params; };
@@ -53,7 +53,7 @@ vec3 incidentLight(vec3 irradiance, uint slot, Reflection r)
     return irradiance * max(light, vec3(0.0));
 }
 
-/// pi times the radiance that the lobe sees. @return false where no sample reaches
+/// pi times the mean radiance over the lobe. @return false where no sample reaches
 bool interpolatedLight(vec3 x, vec3 n, Reflection r, out vec3 light)
 {
     light = vec3(0.0);

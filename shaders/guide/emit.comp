@@ -4,15 +4,15 @@
 #include "shaders/lib/emission.glsl"
 #include "shaders/guide/guide.h"
 
-// How one photon per thread leaves its light, as photons/emit.comp, but by the learned distribution: more of them, of less
-// power each, where they are wanted.
+// Emits one photon per thread, like photons/emit.comp but with the learned distribution: more photons of less power each where
+// importance is high.
 
 layout(local_size_x = kRaysGroupSize) in;
 layout(push_constant, scalar) uniform Params { EmitParams params; };
 
 layout(set = 1, binding = 0, scalar) readonly buffer Groups { GuideGroups groups; };
 layout(set = 1, binding = 1, scalar) readonly buffer Distribution { GuideDistribution distribution; };
-layout(set = 1, binding = 2, scalar) readonly buffer OtherLights { float other_lights[]; }; // by light: share of it and those before
+layout(set = 1, binding = 2, scalar) readonly buffer OtherLights { float other_lights[]; }; // by light: cumulative fraction of power
 layout(set = 1, binding = 3, scalar) writeonly buffer Starts { PhotonStart starts[]; };
 layout(set = 1, binding = 4, scalar) writeonly buffer Cells { uint cells[]; };
 #include "shaders/lib/guide.glsl"

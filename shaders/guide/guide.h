@@ -5,25 +5,25 @@
 
 GPU_NAMESPACE_BEGIN
 
-// What photons may leave by is divided into groups of cells: each beam (sun or environment, whose photons start on a plane as wide
-// as the scene) is a group whose cells divide that plane, smaller ones where the viewer is (lib/emission.glsl); all other lights
-// together are the last one, whose cells divide their power. Unless something was learned, groups are equally likely, for the
-// power of a beam says nothing of how much of it is seen, and so are the cells of each.
+// The emission space is divided into groups of cells: each directional or environment light, whose photons start on a plane as wide
+// as the scene, is a group whose cells divide that plane, smaller ones near the viewer (lib/emission.glsl). All other lights
+// together are the last group, whose cells divide their power. Before anything is learned, groups are equally likely, because the
+// power of a directional light does not tell how much of it is visible, and so are the cells of each.
 GPU_CONST uint kGuideSide = 32u;
 GPU_CONST uint kGuideCells = kGuideSide * kGuideSide; // of a group
 GPU_CONST uint kGuideBeams = 7u;                      // that have a group of their own at most
 GPU_CONST uint kGuideGroups = kGuideBeams + 1u;       // the last is that of the other lights
 GPU_CONST uint kGuideTotal = kGuideGroups * kGuideCells;
 GPU_CONST uint kGuideVoxels = 64u;                    // each way, over the grid of lib/morton.glsl
-GPU_CONST uint kGuideSides = 6u;                      // of a voxel: both sides of a thin wall may not both be wanted
+GPU_CONST uint kGuideSides = 6u;                      // of a voxel: the two sides of a thin wall differ in importance
 GPU_CONST uint kGuidePlaces = kGuideSides * kGuideVoxels * kGuideVoxels * kGuideVoxels;
-GPU_CONST uint kGuideMarkStride = 4u;                 // of this many gathering rays one tells where light is wanted
-GPU_CONST uint kGuideMostWanted = 1023u;              // rays that a place counts with at most
+GPU_CONST uint kGuideMarkStride = 4u;                 // one of this many gathering rays is splatted
+GPU_CONST uint kGuideMostWanted = 1023u;              // largest importance of a place, rays
 GPU_CONST uint kGuideGroupSize = 64u;
 GPU_CONST uint kGuideLearnSize = 256u;
 
-GPU_CONST float kGuideUnguided = 0.35f; // part of the photons that leaves as if nothing was learned: few weigh 3 times as much
-GPU_CONST float kGuideMemory = 0.75f;  // of what was learned before, a frame
+GPU_CONST float kGuideUnguided = 0.35f; // fraction of the photons that is emitted without guiding, which bounds the weights
+GPU_CONST float kGuideMemory = 0.75f;  // weight of what was learned before, a frame
 
 struct GuideGroups // which lights they are; fixed for a scene
 {
@@ -35,15 +35,15 @@ GPU_SIZE(GuideGroups, 92);
 
 struct GuideScore
 {
-    uint now;     // gathering rays at the places of this frame's photons, in proportion to their power, fixed point
+    uint now;     // importance at the places of this frame's photons, weighted by their power, fixed point
     float before; // fading sum over the frames
 };
 GPU_SIZE(GuideScore, 8);
 
-struct GuideDistribution // that photons leave by, learned
+struct GuideDistribution // of emission, learned
 {
     float groups[kGuideGroups]; // probability of a group and those before it
-    float cells[kGuideTotal];   // within its group, probability of a cell and those before it: no digits are lost on the others
+    float cells[kGuideTotal];   // within its group, cumulative probability of its cells: more precise than over all groups
 };
 GPU_SIZE(GuideDistribution, 32800);
 

@@ -3,7 +3,7 @@
 #extension GL_EXT_scalar_block_layout : require
 #include "shaders/guide/guide.h"
 
-// Makes the distribution that the next photons leave by. One group: each thread takes a run of cells of one group, then runs
+// Computes the emission distribution of the next photons. One group: each thread takes a run of cells of one group, then runs
 // add up in order.
 
 layout(local_size_x = kGuideLearnSize) in;

@@ -3,7 +3,7 @@
 #extension GL_EXT_scalar_block_layout : require
 #include "shaders/lib/voxel.glsl"
 
-// Counts the gathering rays that ended at each place. One thread per kGuideMarkStride rays of the queue.
+// Splats the ends of gathering rays into the importance map: counts them by place. One thread per kGuideMarkStride rays of the queue.
 
 layout(local_size_x = kGuideGroupSize) in;
 

@@ -3,7 +3,7 @@
 #extension GL_EXT_scalar_block_layout : require
 #include "shaders/lib/voxel.glsl"
 
-// Sums, by the cell that a path left from, how much light is wanted where its photons fell. One thread per path.
+// Estimates the importance of each cell: the sum over its paths of the importance where their photons fell. One thread per path.
 
 layout(local_size_x = kGuideGroupSize) in;
 layout(push_constant, scalar) uniform Params { ScoreParams params; };

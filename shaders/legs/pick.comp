@@ -5,7 +5,8 @@
 #include "shaders/lib/math.glsl"
 #include "shaders/lib/random.glsl"
 
-// Takes legs of photons' paths in proportion to their power, each from a run of paths of its own. One thread per leg.
+// Samples segments (legs) of photons' paths in proportion to their power, each from a range of paths of its own. One thread per
+// leg.
 
 layout(local_size_x = kRaysGroupSize) in;
 layout(push_constant, scalar) uniform Params { LegParams params; };

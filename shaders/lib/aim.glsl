@@ -1,5 +1,5 @@
-// Aims gathering rays where light comes from. Which way that is, legs of photons' paths tell that arrived nearby, so that rays are
-// not lost on what is bright and out of sight (Jensen 1995, "Importance Driven Path Tracing using the Photon Map"; from where each
+// Aims gathering rays where light comes from, estimated from segments (legs) of photons' paths that arrived nearby, so that no
+// rays are spent on what is bright but occluded (Jensen 1995, "Importance Driven Path Tracing using the Photon Map"; from where each
 // came is known here, and is seen from the sample under another angle). One group per sample: all its threads call each function.
 #ifndef LIB_AIM_GLSL
 #define LIB_AIM_GLSL
@@ -33,8 +33,8 @@ uint aimCell(vec3 local)
     return column * kAimRows + min(uint((1.0 - square(local.z)) * float(kAimRows)), kAimRows - 1u);
 }
 
-/// Where columns hold this many rays' worth of legs' light by chance alone, they say nothing: probability that legs aim a ray. Of n
-/// equal legs in c even cells the squares of their shares sum to 1 / c + 1 / n on average; only what is above that is light.
+/// Probability that a ray is aimed by legs: 0 where their distribution over cells may be due to chance. For n equal legs in c equally
+/// likely cells the squares of the cells' fractions sum to 1 / c + 1 / n on average; only the excess is evidence.
 float aimShare()
 {
     float squares = 0.0;

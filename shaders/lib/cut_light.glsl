@@ -17,10 +17,10 @@ Incident nearestCutLight(vec3 x, vec3 n, float radius2)
     return Incident(irradiance, unpackNormal(directions[nearest]), irradiance);
 }
 
-/// Whether the node is seen from everywhere on its disc.
+/// Whether the node is visible from everywhere on its disc.
 bool isSeenByAll(CutNode node) { return isClear(node) || eyeHeight(node) == 0.0; }
 
-/// Whether nothing stands between the surface at x and the node's eye. Translucent surfaces stop the ray as they stop the probes'.
+/// Whether the node's eye is visible from the surface at x. Translucent surfaces stop the ray as they stop the probe rays.
 bool isSeen(CutNode node, vec3 x, vec3 n, uint random)
 {
     if (isSeenByAll(node))
@@ -36,10 +36,10 @@ bool isSeen(CutNode node, vec3 x, vec3 n, uint random)
     return !kSceneHasTranslucency || !met_translucent || closestHit(origin, direction, kRayStart, distance, random).slot == kNone;
 }
 
-/// Light at x: the sum of what the cut nodes around it spread there, as far as walls let them. One of them is chosen by what it
-/// gives, tells whence light comes, and is asked whether it is seen: on average every node counts as far as it is. It then has the
-/// light of all in its own color: the sum's would be that of nodes behind walls, too. None where no photon fell near: what light
-/// there is has gone to the places where photons fell. @param random bits
+/// Light at x: the sum of what the visible cut nodes around it spread there. One node is chosen with probability proportional to
+/// its irradiance at x; it gives the direction of the light, and one ray tests its visibility, so that the expectation is the sum
+/// over visible nodes. The result has the chosen node's color: the color of the sum would include nodes behind walls. None if no
+/// photon fell near: its power is where photons fell. @param random bits
 Incident cutLight(vec3 x, vec3 n, uint random)
 {
     vec3 sum = vec3(0.0);

@@ -44,7 +44,7 @@ float cutWeight(CutNode node, vec3 x, vec3 n)
 /// Integral of that weight over a plane through the node, square metres.
 float cutArea(float support) { return 0.5 * kPi * square(support); }
 
-/// Coverage probe rays of each node: those wanted, or fewer where there are too many nodes; in both parts alike.
+/// Coverage probe rays of each node: the number set, or fewer if there are too many nodes; in both parts alike.
 ProbeParams probesFor(uint node_count, ProbeParams wanted)
 {
     uint room = kCutProbeCapacity / max(node_count, 1u), all = wanted.ray_count + wanted.rim_count;

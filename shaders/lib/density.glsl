@@ -10,7 +10,7 @@
 
 const uint kDensityBins = 32u;
 const uint kDensityRefinements = 3u; // histograms, each within one bin of the one before
-const uint kDensityThrong = 4096u; // photons looked at, from which on a full bin is not counted to its end
+const uint kDensityThrong = 4096u; // photons visited, after which a full bin is not counted to its end
 
 /// Squared distance of a photon to x, longer off the surface than along it; kInfinity where it lights another surface.
 float photonDistance2(Photon photon, vec3 x, vec3 n)
@@ -20,11 +20,11 @@ float photonDistance2(Photon photon, vec3 x, vec3 n)
 }
 
 /// Squared distance within which there are `wanted` photons, or radius2 where there are fewer.
-/// @param guess2 of that distance; the search narrows and widens it, but a good one saves looking at photons far away
+/// @param guess2 of that distance; the search narrows and widens it, but a good guess saves visiting distant photons
 ///
 /// A caustic's focus may hold most photons of the map, and software Vulkan ends a thread's loops after 65535 rounds in all.
-/// So bins past the one that completes `wanted` close as soon as it does; where that one holds a throng, the disc up to it is
-/// parted anew before all are counted; if it is a narrow rim, it is left out: there photons weigh next to nothing.
+/// So bins past the one that completes `wanted` close as soon as it does; where that one is overcrowded, the disc up to it
+/// is divided into bins again before all are counted; if it is a narrow rim, it is left out: photons there have almost no weight.
 float nearestRadius2(vec3 x, vec3 n, uint photon_count, uint wanted, float radius2, float guess2)
 {
     uint bins[kDensityBins];
@@ -85,8 +85,8 @@ struct DensityEstimate
 };
 
 /// Irradiance at x from the `wanted` nearest photons within sqrt(radius2), weighted by (1 - d^2/r^2)^2, whose integral
-/// over the disc is pi r^2 / 3 (Silverman 1986). However few there are: leaving out those of a dim place would take its
-/// light away. @param guess2 of their squared distance
+/// over the disc is pi r^2 / 3 (Silverman 1986). There is no minimum count, which would lose
+/// the light of dim places. @param guess2 of their squared distance
 DensityEstimate estimateIrradiance(vec3 x, vec3 n, uint photon_count, uint wanted, float radius2, float guess2)
 {
     float within2 = nearestRadius2(x, n, photon_count, wanted, radius2, guess2);

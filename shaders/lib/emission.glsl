@@ -1,4 +1,4 @@
-// Photons leave lights: positions and directions by each light's own distribution, or aimed at the scene's specular
+// Emission of photons: positions and directions by each light's own distribution, or aimed at the scene's specular
 // objects (Jensen 2001, "Realistic Image Synthesis Using Photon Mapping", 5.2 and 5.3). Functions only.
 #ifndef LIB_EMISSION_GLSL
 #define LIB_EMISSION_GLSL
@@ -28,7 +28,7 @@ vec3 uniformCone(float height, vec2 u)
     return vec3(r * cos(phi), r * sin(phi), 1.0 - h);
 }
 
-/// Squares of u stay compact: what is learned of them holds for a place, not for a slice (Shirley & Chiu 1997).
+/// Squares of u stay compact, so that learned cells are compact regions, not slices (Shirley & Chiu 1997).
 vec2 uniformDisc(vec2 u)
 {
     vec2 at = 2.0 * u - 1.0;
@@ -94,8 +94,8 @@ vec3 beamOrigin(vec3 direction, float aim, bool aimed, uint target, vec2 u, out 
     return origin;
 }
 
-/// The same near the viewer more than elsewhere: density falls with the distance from the view's focus, each way, so that every
-/// cell of a grid over u holds as much of what matters, whatever the size of the scene.
+/// The same near the viewer more than elsewhere: density falls with the distance from the view's focus, each way, so that the
+/// cells of a grid over u are equally important, whatever the size of the scene.
 vec3 focusedOrigin(vec3 direction, vec2 u, out float pdf)
 {
     mat3 frame = frameAround(direction);

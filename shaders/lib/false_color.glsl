@@ -29,7 +29,7 @@ vec3 heatColor(float t)
     return fromSrgb(mix(kColors[i], kColors[i + 1u], at - float(i)) / 255.0);
 }
 
-/// The picture as a dim, bluish ground that light colours stand out from.
+/// The picture as a dim, bluish background for bright colours.
 vec3 groundColor(vec3 radiance, float exposure, uint curve)
 {
     return luminance(displayTransform(exposure * radiance, curve)) * vec3(0.08, 0.16, 0.4);

@@ -1,11 +1,11 @@
-// One link of a gathering ray's path: at a surface that scatters it reads the light there; a mirror or glass sends it on.
+// One vertex of a gathering ray's path: at a surface that scatters it reads the light there; a mirror or glass continues it.
 // The kernel defines `Incident lightAt(vec3 x, vec3 n, uint random)` before it includes this. Functions only.
 #ifndef LIB_GATHER_LINK_GLSL
 #define LIB_GATHER_LINK_GLSL
 #include "shaders/gather/gather.h"
 #include "shaders/lib/path.glsl"
 
-const float kLeastAlpha = 0.25; // one direction stands for all that light comes from: a lobe no sharper than that
+const float kLeastAlpha = 0.25; // the sharpest lobe for which one direction may represent all incident light
 
 /// The same with lobes wide enough for that.
 Bsdf widened(Bsdf b)
@@ -16,7 +16,7 @@ Bsdf widened(Bsdf b)
     return b;
 }
 
-/// What a surface sends towards where a path came from of the light that photons brought (Jensen 1996).
+/// Light of photons that a surface reflects back along a path (Jensen 1996).
 vec3 reflectedLight(PathVertex v, Incident light)
 {
     Bsdf b = v.bsdf, wide = widened(b);
@@ -29,7 +29,7 @@ vec3 reflectedLight(PathVertex v, Incident light)
 
 struct Link
 {
-    vec3 radiance; // that the path brings home; 0 while it goes on
+    vec3 radiance; // of the finished path; 0 while it continues
     bool goes_on;
     Ray next;
 };

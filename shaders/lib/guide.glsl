@@ -1,10 +1,10 @@
-// Where photons leave for the places that gathering rays see. The kernel declares `buffer Groups { GuideGroups groups; }`
+// Guided emission: towards the places where gathering rays end. The kernel declares `buffer Groups { GuideGroups groups; }`
 // and `buffer Distribution { GuideDistribution distribution; }` before it includes this. Functions only.
 #ifndef LIB_GUIDE_GLSL
 #define LIB_GUIDE_GLSL
 #include "shaders/guide/guide.h"
 
-/// Share of a cell in all power: the probability by which emitFrom() and emitBeam() count.
+/// Fraction of the total power in a cell: the probability by which emitFrom() and emitBeam() count.
 float cellShare(uint cell) { return groups.shares[cell / kGuideCells] / float(kGuideCells); }
 
 /// Probability of a cell by what was learned.

@@ -15,9 +15,9 @@ vec4[4] harmonicBasis(vec3 d)
                    vec4(r38 * x * (5.0 * z2 - 1.0), 0.5 * r15 * z * across, r58 * x * (x * x - 3.0 * y * y), 0.0));
 }
 
-/// Share of a surface's reflection that is from harmonics where samples reach it. None where something shines through or the
-/// lobe is not the one round lobe that they know; and next to none where hardly anything is diffuse, for there are no samples
-/// on such surfaces.
+/// Fraction of a surface's reflection that is computed from harmonics where samples reach it. None for
+/// transmissive materials and for other lobes than one isotropic GGX lobe; almost none where hardly anything is diffuse, as
+/// there are no samples on such surfaces.
 float harmonicShare(Bsdf b)
 {
     if (!hasFeature(kFeatureSpecular) || b.smooth_specular || b.transmission > 0.0 || hasClearcoat(b) || hasSheen(b) || isTranslucent(b) ||
@@ -60,7 +60,7 @@ float channelLight(Reflection r, uvec4 words)
            dot(r.weights[2], unpackSnorm4x8(words.z)) + dot(r.weights[3], unpackSnorm4x8(words.w));
 }
 
-/// The same of even light of irradiance 1. Below the sample's horizon bands cannot say how dark it is.
+/// The same of even light of irradiance 1. Low bands cannot represent the darkness below the sample's horizon.
 float evenLight(Reflection r, vec3 normal)
 {
     float mu = dot(r.direction, normal);

@@ -13,7 +13,7 @@ struct LightSample
     float distance; // metres
     vec3 position;  // metres, on the light, off an emissive triangle by what rounding needs; nowhere for directional and environment light
     vec3 weight;    // incident radiance / pdf (area, environment) or irradiance at normal incidence / pmf (punctual)
-    float pdf;      // per steradian, selection included; 0 for punctual lights, which no other technique can find
+    float pdf;      // per steradian, selection included; 0 for punctual lights, which BSDF sampling cannot hit
 };
 
 const LightSample kNoLight = LightSample(vec3(0.0, 0.0, 1.0), 0.0, vec3(0.0), vec3(0.0), 0.0);

@@ -40,7 +40,7 @@ vec3 surfaceEmission(uint material, vec2 uv0, vec2 uv1, vec2 footprints)
 /// What a texture that not every scene has multiplies a factor with; 1 without it.
 vec4 rareTexel(uint ref, Surface s) { return hasFeature(kFeatureRareMaps) && ref != kNone ? sampleTexture(ref, s.uv0, s.uv1, s.footprints) : vec4(1.0); }
 
-/// The layers that few materials have. What the scene has not is 0.
+/// The layers that few materials have; 0 where the scene has none.
 void addRareLayers(Surface s, inout SurfaceMaterial m)
 {
     m.clearcoat = m.sheen_roughness = m.anisotropy = m.iridescence = m.dispersion = m.diffuse_transmission = 0.0;

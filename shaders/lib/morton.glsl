@@ -6,8 +6,8 @@
 /// Coordinates of which a unit is as long as things are far: metres in view distances near the focus, logarithms beyond.
 vec3 bent(vec3 p) { return asinh((p - view_scale.focus) / view_scale.distance); }
 
-/// Where p lies in the cube around the scene in those coordinates, 0 to 1. A room beside a plain of kilometres has its share of
-/// the cube, and so has a scene that is all in view.
+/// Where p lies in the cube around the scene in those coordinates, 0 to 1. A room beside a plain of kilometres takes a good
+/// part of the cube, and so does a scene that is all in view.
 vec3 gridPlace(vec3 p)
 {
     vec3 low = bent(scene.bounds_min), extent = bent(scene.bounds_max) - low;

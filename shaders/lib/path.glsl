@@ -1,4 +1,4 @@
-// Steps that every path shares: what it meets at a vertex, absorption, the ray that leaves, the choice of sampler dimensions.
+// Steps common to all paths: the surface at a vertex, absorption, the ray that leaves, the choice of sampler dimensions.
 // Functions only.
 #ifndef LIB_PATH_GLSL
 #define LIB_PATH_GLSL
@@ -97,8 +97,8 @@ float dispersionDraw(Sampler s)
     return nextPair(s).x;
 }
 
-/// Where a material disperses light, its path goes on for one channel alone: the one that it stands for already, else one
-/// picked by what it carries. Light that is not refracted is not concerned.
+/// Where a material disperses light, the path continues for a single channel: the one that it represents already, else one picked
+/// in proportion to `carried`. Only refracted light is concerned.
 /// @param carried throughput or power; @param random in [0, 1)
 void disperse(inout PathVertex v, vec3 carried, float random)
 {
@@ -120,14 +120,14 @@ bool geometryAgrees(Surface s, vec3 wi, float local_z)
     return dot(s.geometric_normal, wi) * local_z > 0.0;
 }
 
-/// So must they where light is looked for. From a point on the smooth surface above the triangle a ray may also go where the
-/// triangle faces away: whether it gets out there is for the ray to find.
+/// The same for light sampling. From a point on the smooth surface above the triangle a ray may also go where the triangle faces
+/// away: the ray itself tests whether it is occluded there.
 bool sidesAgree(Surface s, vec3 wi, float local_z)
 {
     return geometryAgrees(s, wi, local_z) || (s.lifted && local_z > 0.0 && dot(s.smooth_normal, wi) > 0.0);
 }
 
-/// The ray that leaves s along wi: off the surface by more than rounding, to the side from where wi was looked for.
+/// The ray that leaves s along wi: off the surface by more than rounding, to the side that wi was sampled on.
 Ray leavingRay(Surface s, vec3 wi, float t_max, uint path)
 {
     bool above = dot(s.geometric_normal, wi) >= 0.0 || (s.lifted && dot(s.smooth_normal, wi) > 0.0);
@@ -140,7 +140,7 @@ Ray leavingRay(Surface s, vec3 wi, float t_max, uint path)
     return Ray(origin, t_max, wi, path);
 }
 
-/// The ray that decides whether s sees the light. It ends there: traversal lets pass what the light lies on.
+/// The shadow ray from s to the light. It ends there: traversal ignores the surface on which the light lies.
 Ray shadowRay(Surface s, LightSample light, uint path)
 {
     Ray ray = leavingRay(s, light.wi, kInfinity, path);

@@ -1,4 +1,4 @@
-// What a node of the photon tree says of the light around it. The kernel declares `buffer Size`,
+// Estimates of the light around a node of the photon tree. The kernel declares `buffer Size`,
 // `buffer Sums { PhotonSums sums[]; }` and the usamplerBuffers TreeNodes and Photons before it includes this. Functions only.
 #ifndef LIB_PHOTON_NODE_GLSL
 #define LIB_PHOTON_NODE_GLSL
@@ -37,7 +37,7 @@ struct PhotonNode
     vec3 center;      // metres: power-weighted mean of its photons
     vec3 normal;      // unit
     float longest;    // metres: about the longer side of what its photons lie on; 0 for a single one
-    float area;       // square metres: that its photons lie on; 0 where fewer than three do not tell
+    float area;       // square metres: that its photons lie on; 0 for fewer than three, which do not determine it
     float irradiance; // luminance of E~
     float noise2;     // square of the relative standard error of E~
     bool flat_;       // its photons lie near one plane and face one way: E~ means something

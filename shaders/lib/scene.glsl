@@ -4,7 +4,7 @@
 #include "format/gpu_scene.h"
 #include "shaders/lib/view_scale.glsl"
 
-// What the scene has, known when the pipeline is built: what it has not costs nothing.
+// Features of the scene, constant when the pipeline is built: absent ones cost nothing.
 layout(constant_id = 0) const uint kSceneFeatures = 0xffffffffu; // kFeature*
 layout(constant_id = 1) const uint kUsedTexturePages = kTexturePageCount;
 bool hasFeature(uint feature) { return (kSceneFeatures & feature) != 0u; }

@@ -16,7 +16,7 @@ float evenRadius(uint id, PhotonNode node, CutParams params)
     while (node.count <= kCutFewest)
     {
         if (id == 0u)
-            return reachAt(node.center, params); // so few photons say nothing of their density
+            return reachAt(node.center, params); // so few photons do not determine a density
         id = (isPhoton(id) ? leaf_parents[id + 1u - size.count] : node_parents[id]) & ~kTreeLeafBit;
         node = photonNode(id);
     }

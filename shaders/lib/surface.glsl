@@ -12,7 +12,7 @@ struct Surface
     vec3 direction;        // unit, of the ray that arrived
     float error;           // metres, that rounding may have put `position` off the surface
     float back;            // metres, back along `direction` to where rays leave on the side it came from
-    bool lifted;           // that is well above the triangle: on the smooth surface that the normals speak of
+    bool lifted;           // that is well above the triangle: on the smooth surface that the normals describe
     vec3 geometric_normal; // unit, on the side the ray came from
     vec3 normal;           // shading normal, unit, same side
     vec3 smooth_normal;    // the same before the normal map: what changes slowly along a surface
@@ -78,8 +78,8 @@ float tangentPlaneHeight(vec3 point, vec3 vertex, vec3 normal, float size)
     return max(0.0, dot(vertex - point, normal) - 1e-4 * size);
 }
 
-/// How high above a point of a triangle the smooth surface is that the normals speak of, where it is convex (Hanika 2021,
-/// "Hacking the Shadow Terminator"). 0 where the normals are far from the triangle's: they then speak of no surface.
+/// Height above a point of a triangle of the smooth surface that the normals describe, where it is convex (Hanika 2021,
+/// "Hacking the Shadow Terminator"). 0 where the normals are far from the triangle's: they then describe no surface.
 /// @param normals of the vertices, unit, on one side of the triangle as its `normal` is; @param size metres, of the triangle
 float smoothHeight(vec3 point, vec3 weights, vec3 v[3], vec3 normals[3], vec3 normal, float size)
 {
@@ -224,7 +224,8 @@ Surface surfaceAt(uint slot, vec2 barycentrics, vec3 direction, float width)
 /// As thin as a line.
 Surface surfaceAt(uint slot, vec2 barycentrics, vec3 direction) { return surfaceAt(slot, barycentrics, direction, 0.0); }
 
-/// The surface where a ray met it. On a triangle that is large against the ray's way, the ray says better where that is.
+/// The surface where a ray met it. On a triangle that is large relative to the ray's length, the position is computed along the
+/// ray, which is more precise.
 Surface surfaceAt(Ray ray, Hit hit, float width)
 {
     Surface s = surfaceAt(hit.slot, hit.barycentrics, ray.direction, width);

@@ -4,7 +4,7 @@
 #include "shaders/lib/scene.glsl"
 #include "format/texture_tile.h"
 
-// No device is asked for non-uniform descriptor indexing (software Vulkan lacks it): one constant index a case.
+// Without non-uniform descriptor indexing, which software Vulkan lacks: one constant index a case.
 #define TEXTURE_PAGE_CASE(index) case index: if (index < kUsedTexturePages) size = vec2(textureSize(texture_pages[index], 0)); break;
 vec2 texturePageSize(uint page)
 {

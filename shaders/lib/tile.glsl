@@ -1,11 +1,11 @@
-// Which pixel a thread takes. Functions only.
+// Mapping of threads to pixels. Functions only.
 #ifndef LIB_TILE_GLSL
 #define LIB_TILE_GLSL
 
 const uint kTileSide = 8u;
 
-/// Threads take the picture's pixels tile by tile, for pixels side by side look for the same things: those of a group should
-/// be near each other both ways. Each number below `count` stands for one pixel.
+/// Threads process the picture tile by tile: neighbouring pixels read the same data, so those of a group should be near each other
+/// both ways. Each number below `count` is mapped to one pixel.
 /// @param width of the picture, @param count of its pixels
 uint tiledPixel(uint thread, uint width, uint count)
 {

@@ -13,7 +13,7 @@
 // (Software Vulkan ends all loops of a thread after 65535 rounds together: some thousand layers are within that.)
 
 /// Whether the ray meets a surface with alpha: by the probability of its coverage, one decision a triangle, whatever the
-/// order in which it is asked.
+/// order of the tests.
 bool meetsAlpha(Hit hit, uint triangle, uint seed)
 {
     return toUnitFloat(hash(seed, triangle)) < surfaceCoverage(hit.slot, hit.barycentrics);
@@ -99,7 +99,7 @@ vec3 layerTransmittance(Hit hit, vec3 direction)
     return 1.0 - coverage * (1.0 - thinTransmittance(hit, direction));
 }
 
-/// Whether a ray ends in the triangle's plane as far as rounding lets one tell: what a lamp lies on does not shadow it.
+/// Whether a ray ends in the triangle's plane up to rounding: the surface on which a light lies does not shadow it.
 bool endsOn(uint slot, vec3 origin, vec3 direction, float t_max)
 {
     vec3 v0 = loadBvhTriangle(slot).v0, v1 = loadBvhTriangle(slot).v1, v2 = loadBvhTriangle(slot).v2;
@@ -116,7 +116,7 @@ bool isBetween(uint slot, TriangleRay ray, float t_max, out Hit hit)
 }
 
 /// Whether an opaque triangle lies within t_max. Translucent ones (any kTriangle* flag) let the ray pass;
-/// `met_translucent` says whether there was one, so that the caller knows when nothing is left to look at.
+/// `met_translucent` is whether there was one, so that the caller need not search for them otherwise.
 bool meetsOpaque(vec3 origin, vec3 direction, float t_max, out bool met_translucent)
 {
     traversal_depth = 0u;

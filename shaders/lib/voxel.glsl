@@ -1,4 +1,4 @@
-// The places, and their sides, that tell where light is wanted: a grid over the scene. Functions only.
+// The importance map's bins: voxels of a grid over the scene, and their sides. Functions only.
 #ifndef LIB_VOXEL_GLSL
 #define LIB_VOXEL_GLSL
 #include "shaders/guide/guide.h"

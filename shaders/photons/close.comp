@@ -3,8 +3,8 @@
 #extension GL_EXT_scalar_block_layout : require
 #include "shaders/photons/photons.h"
 
-// What of an emission the map holds: all its paths, or, where there is no room for so many photons, the first of them, as many
-// as fit whole. Those are then traced again to their places; else the photons that were appended are put in order. One thread.
+// Determines which paths of an emission the map holds: all, or, if there is no room for so many photons, the first of them, as
+// many as fit whole. Those are then traced again to their places; otherwise the appended photons are put in order. One thread.
 
 layout(local_size_x = 1) in;
 layout(push_constant, scalar) uniform Params { StoreParams params; };

@@ -4,7 +4,7 @@
 #include "shaders/lib/emission.glsl"
 #include "shaders/photons/photons.h"
 
-// How one photon per thread leaves its light.
+// Emits one photon per thread from a light.
 
 layout(local_size_x = kRaysGroupSize) in;
 layout(push_constant, scalar) uniform Params { EmitParams params; };

@@ -6,7 +6,7 @@
 #include "shaders/lib/side.glsl"
 #include "shaders/photons/photons.h"
 
-// Sort keys of the photons' tree: the side that a photon's surface faces, then where it lies. No node of the tree but its
+// Sort keys of the photon tree: the facing side of a photon's surface, then its position. No node of the tree but its
 // topmost few then holds photons of both sides of a sheet, however thin it is, or of a wall and the floor below it. One thread
 // per photon.
 

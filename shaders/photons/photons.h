@@ -14,11 +14,11 @@ struct Photon // where a photon met a surface that scatters
 };
 GPU_SIZE(Photon, 32);
 
-struct PhotonStart // how a photon leaves its light
+struct PhotonStart // a photon at its light
 {
     vec3 origin;
     vec3 direction; // unit
-    vec3 power;     // watts; 0: it does not
+    vec3 power;     // watts; 0: not emitted
 };
 GPU_SIZE(PhotonStart, 36);
 

@@ -32,7 +32,7 @@ struct PathState // between two vertices
     uint stored;   // photons so far
 };
 
-const float kMostGain = 16.0; // at grazing angles few photons would carry much
+const float kMostGain = 16.0; // limits the power of photons at grazing angles
 
 bool finite(vec3 v) { return !any(isnan(v)) && !any(isinf(v)); }
 
@@ -66,8 +66,8 @@ float survivalOf(uint event, float reflected)
     return min(reflected, event < kFreeEvents ? kMostSurvival : kLateSurvival);
 }
 
-/// Photons far from the viewer carry much, and hardly one of them finds its way back: some are aimed at what is in view, with as
-/// little power as their chance of going there, in place of few and bright ones.
+/// Photons far from the viewer have high power, and hardly one of them returns: some are aimed at what is in view, with power in
+/// proportion to the probability of that direction, in place of few and bright ones.
 const float kAimedBounces = 0.1, kFarVertex = 8.0, kAimedRadius = 2.0; // the lengths in view distances
 
 /// One sample of the BSDF or of the cone towards the view (one-sample model, balance heuristic; Veach 1997, 9.2.4).
@@ -130,7 +130,7 @@ bool scatter(uint path, uint event, Hit hit, inout PathState state, inout Ray ra
     weight *= shadingGain(s, direction) / max(shadingGain(s, wi), 1.0 / kMostGain);
     vec3 scattered = state.power * weight;
     float reflected = luminance(scattered) / max(luminance(state.power), 1e-30);
-    float survival = survivalOf(event, aimed ? 1.0 : reflected); // an aimed photon is to carry little
+    float survival = survivalOf(event, aimed ? 1.0 : reflected); // aimed photons keep their low power
     if (choice.y >= survival)
         return false;
     state.power = scattered / survival;

@@ -21,7 +21,7 @@ void main()
     const uint count = min(size.count, params.max_count);
     const uint share = shareOf(count, params.group_count, params.least_share);
     const uint begin = gl_WorkGroupID.x * share, end = min(begin + share, count);
-    if (begin >= count) // nobody asks for this group's sum
+    if (begin >= count) // this group's sum is not used
         return;
     uint sum = 0u;
     for (uint i = begin + gl_LocalInvocationIndex; i < end; i += kPrimitivesGroupSize)

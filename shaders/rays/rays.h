@@ -26,7 +26,7 @@ struct Hit
 };
 GPU_SIZE(Hit, 16);
 
-struct ShadowRay // carries `radiance` to its path unless something is in the way
+struct ShadowRay // adds `radiance` to its path unless it is occluded
 {
     Ray ray;
     vec3 radiance; // W/(m^2 sr), all weights included

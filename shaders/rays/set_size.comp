@@ -3,7 +3,7 @@
 #extension GL_EXT_scalar_block_layout : require
 #include "shaders/rays/rays.h"
 
-// Gives a queue a length that the CPU knows. One thread.
+// Sets a queue's length from the CPU. One thread.
 
 layout(local_size_x = 1) in;
 layout(push_constant, scalar) uniform Params { QueueParams params; };

@@ -8,7 +8,7 @@
 // One vertex of every path: adds what it emits, sends a shadow ray to one light, chooses the next direction.
 // One thread per ray of the queue. Unbiased: next-event estimation and BSDF sampling combined by multiple importance
 // sampling (Veach & Guibas 1995), Russian roulette, no clamping.
-// Whatever counts, a path takes the same way with the same random numbers as long as some of its light may still count:
+// Whatever terms are shown, a path is traced with the same random numbers as long as some of its light may still be shown:
 // pictures of single terms sum to the picture of all.
 
 layout(local_size_x = kRaysGroupSize) in;
@@ -48,10 +48,10 @@ uint stageAfter(uint stage, bool delta)
     return stage == kStageEye ? kStageLeft : kStageDeep;
 }
 
-/// What light found now is worth to the picture.
+/// The weight in the picture of light found now.
 vec3 countedThroughput(PathState state) { return state.throughput * state.share; }
 
-/// What part of the sample's weight went through the lobes that count.
+/// The fraction of the sample's weight that went through the lobes that count.
 vec3 countingShare(BsdfSample next)
 {
     vec3 part = params.lobes == kLobeDiffuse ? next.diffuse_weight : next.weight - next.diffuse_weight;
@@ -153,7 +153,7 @@ void main()
     PathVertex v = vertexAt(rays[i], hit);
     state.throughput *= transmittanceTo(v, state.medium, hit.t);
     state.travelled += hit.t;
-    if (isUnlit(v)) // a picture of itself for the eye, black for everything else
+    if (isUnlit(v)) // shows its colour to the eye, black for everything else
     {
         add(path, state.stage == kStageEye ? countedThroughput(state) * v.material.base_color : vec3(0.0), state.stage);
         return;

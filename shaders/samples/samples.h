@@ -52,8 +52,8 @@ struct Sample
     vec3 position;   // metres; of a shading point
     uint normal;
     vec3 irradiance; // W/m^2, indirect only
-    float support;   // metres: how far it speaks for
-    float harmonic;  // metres: harmonic mean distance to what it sees
+    float support;   // metres: influence radius
+    float harmonic;  // metres: harmonic mean distance of its rays' first hits
     uint pixel;
 };
 GPU_SIZE(Sample, 40);

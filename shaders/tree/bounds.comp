@@ -5,7 +5,7 @@
 #include "shaders/rays/rays.h"
 #include "shaders/tree/tree.h"
 
-// Bounds of all nodes, from the spheres up: whoever arrives second at a node goes on with it, so that nobody waits.
+// Bounds of all nodes, bottom-up: the thread that arrives second at a node continues with it, so that no thread waits.
 // One thread per sphere.
 
 layout(local_size_x = kTreeGroupSize) in;

@@ -7,7 +7,7 @@ GPU_NAMESPACE_BEGIN
 
 GPU_CONST uint kTreeGroupSize = 64u;
 GPU_CONST uint kTreeKeyBits = 30u; // of Morton codes: 10 an axis
-GPU_CONST uint kTreeBucket = 4u;   // spheres that are looked at one by one rather than through more nodes
+GPU_CONST uint kTreeBucket = 4u;   // spheres that are tested one by one instead of through more nodes
 GPU_CONST uint kTreeLeafBit = 0x80000000u;
 
 // Inner node i of n - 1; node 0 is the root. It covers the contiguous range [first, first + count) of the sorted spheres;

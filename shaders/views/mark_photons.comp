@@ -4,7 +4,7 @@
 #include "shaders/lib/math.glsl"
 #include "shaders/views/views.h"
 
-// The pixel of every photon that the eye sees directly, of an even choice of them where there are many. One thread per
+// Marks the pixel of every directly visible photon, of a uniform subset where there are many. One thread per
 // photon.
 
 layout(local_size_x = kRaysGroupSize) in;
