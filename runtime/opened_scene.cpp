@@ -35,6 +35,15 @@ Result<OpenedScene> openScene(const PlayerOptions& options, std::span<const char
     auto against = readAgainst(options);
     if (!against)
         return against.error();
+    std::vector<Camera> cameras = packageCameras(*package);
+    std::optional<CameraPath> path;
+    if (!options.path.empty())
+    {
+        const auto loaded = CameraPath::load(options.path, cameras);
+        if (!loaded)
+            return loaded.error();
+        path = *loaded;
+    }
 
     auto instance = Instance::create({.validation = options.validation, .extensions = window_extensions});
     if (!instance)
@@ -63,8 +72,9 @@ Result<OpenedScene> openScene(const PlayerOptions& options, std::span<const char
     return OpenedScene{.instance = *instance,
                        .device = std::move(*device),
                        .scene = std::move(*scene),
-                       .cameras = packageCameras(*package),
+                       .cameras = std::move(cameras),
                        .camera = *camera,
+                       .path = std::move(path),
                        .settings = *settings,
                        .against = std::move(*against)};
 }
