@@ -31,7 +31,7 @@ Candidate placed(const Lanes& values, uint32_t high, uint32_t low, uint32_t step
     return out;
 }
 
-/// Endpoints that fit best where every value keeps its place (least squares), and those beside them.
+/// The best endpoints for the present indices (least squares), and their neighbours.
 void refine(const Lanes& values, uint32_t steps, Candidate& best)
 {
     float aa = 0, ab = 0, bb = 0, av = 0, bv = 0;

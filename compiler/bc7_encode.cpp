@@ -30,9 +30,29 @@ private:
     uint32_t at_ = 0;
 };
 
-uint32_t nearest(float value, uint32_t highest)
+/// Where an endpoint goes that lies halfway between two that can be stored: one end of a line up and the other down, so that
+/// a whole number between both is met by the indices in the middle, and blocks come out neither brighter nor darker.
+enum class Halfway
 {
-    return uint32_t(std::clamp(value + 0.5f, 0.0f, float(highest) + 0.5f));
+    kUp,
+    kDown,
+};
+
+uint32_t nearest(float value, uint32_t highest, Halfway halfway)
+{
+    const float whole = halfway == Halfway::kUp ? std::floor(value + 0.5f) : std::ceil(value - 0.5f);
+    return uint32_t(std::clamp(whole, 0.0f, float(highest)));
+}
+
+float expanded7(uint32_t bits) // as decoders do
+{
+    return float(bits << 1 | bits >> 6);
+}
+
+/// What expanded7() makes of it is `value`; linear between whole numbers, so that rounding it finds the nearest.
+float wanted7(float value)
+{
+    return value <= 126 ? value / 2 : value >= 129 ? (value - 1) / 2 : 63 + (value - 126) / 3;
 }
 
 /// An index of the anchor texel has no highest bit: where it would need one, the endpoints change places.
@@ -63,7 +83,7 @@ struct Ends6
     Line<N> line; // as decoded; made with the ends, so it stands before them
     End first, second;
 
-    static End quantize(const bc7::Color<N>& color, bc7::Color<N>& decoded)
+    static End quantize(const bc7::Color<N>& color, Halfway halfway, bc7::Color<N>& decoded)
     {
         End best;
         float best_error = INFINITY;
@@ -75,7 +95,7 @@ struct Ends6
             float error = 0;
             for (size_t k = 0; k < N; ++k)
             {
-                end.bits[k] = nearest((color[k] - float(p)) / 2, 127);
+                end.bits[k] = nearest((color[k] - float(p)) / 2, 127, halfway);
                 value[k] = float(2 * end.bits[k] + p);
                 error += (value[k] - color[k]) * (value[k] - color[k]);
             }
@@ -87,7 +107,7 @@ struct Ends6
         return best;
     }
     explicit Ends6(const Line<N>& wanted)
-        : first(quantize(wanted.first, line.first)), second(quantize(wanted.second, line.second))
+        : first(quantize(wanted.first, Halfway::kUp, line.first)), second(quantize(wanted.second, Halfway::kDown, line.second))
     {
     }
 };
@@ -129,20 +149,20 @@ struct Ends1
         {
             std::array<uint32_t, 3> a, b;
             Line<3> decoded;
-            const float error = quantize(wanted.first, shared, a, decoded.first) +
-                                quantize(wanted.second, shared, b, decoded.second);
+            const float error = quantize(wanted.first, shared, Halfway::kUp, a, decoded.first) +
+                                quantize(wanted.second, shared, Halfway::kDown, b, decoded.second);
             if (error < best)
                 best = error, first = a, second = b, p = shared, line = decoded;
         }
     }
-    static float quantize(const bc7::Color<3>& color, uint32_t p, std::array<uint32_t, 3>& bits, bc7::Color<3>& decoded)
+    static float quantize(const bc7::Color<3>& color, uint32_t p, Halfway halfway, std::array<uint32_t, 3>& bits,
+                          bc7::Color<3>& decoded)
     {
         float error = 0;
         for (size_t k = 0; k < 3; ++k)
         {
-            bits[k] = nearest((color[k] * (127.0f / 255) - float(p)) / 2, 63);
-            const uint32_t seven = 2 * bits[k] + p;
-            decoded[k] = float(seven << 1 | seven >> 6);
+            bits[k] = nearest((wanted7(color[k]) - float(p)) / 2, 63, halfway);
+            decoded[k] = expanded7(2 * bits[k] + p);
             error += (decoded[k] - color[k]) * (decoded[k] - color[k]);
         }
         return error;
@@ -216,11 +236,15 @@ struct Ends5
     {
         for (size_t k = 0; k < N; ++k)
         {
-            first[k] = nearest(N == 1 ? wanted.first[k] : wanted.first[k] * (127.0f / 255), N == 1 ? 255 : 127);
-            second[k] = nearest(N == 1 ? wanted.second[k] : wanted.second[k] * (127.0f / 255), N == 1 ? 255 : 127);
-            line.first[k] = float(N == 1 ? first[k] : first[k] << 1 | first[k] >> 6);
-            line.second[k] = float(N == 1 ? second[k] : second[k] << 1 | second[k] >> 6);
+            first[k] = quantize(wanted.first[k], Halfway::kUp, line.first[k]);
+            second[k] = quantize(wanted.second[k], Halfway::kDown, line.second[k]);
         }
+    }
+    static uint32_t quantize(float value, Halfway halfway, float& decoded)
+    {
+        const uint32_t bits = N == 1 ? nearest(value, 255, halfway) : nearest(wanted7(value), 127, halfway);
+        decoded = N == 1 ? float(bits) : expanded7(bits);
+        return bits;
     }
 };
 

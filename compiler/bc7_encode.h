@@ -1,5 +1,5 @@
 // Encodes blocks as BC7 (Khronos Data Format Specification 1.3, chapter 20): mode 6 for what lies along one line of colours, mode 1 for two
-// regions of colour, mode 5 where one channel goes its own way.
+// regions of colour, mode 5 where one channel is uncorrelated with the others.
 #pragma once
 #include "compiler/lanes.h"
 

@@ -114,7 +114,7 @@ Places place(const std::array<Lanes, N>& c, const Lanes& mask, const Line<N>& li
     return places;
 }
 
-/// The endpoints that fit best where every texel keeps its place (least squares).
+/// The best endpoints for the present indices (least squares).
 template <size_t N>
 Line<N> refit(const std::array<Lanes, N>& c, const Lanes& mask, const Places& places, const Line<N>& line)
 {
@@ -133,7 +133,7 @@ Line<N> refit(const std::array<Lanes, N>& c, const Lanes& mask, const Places& pl
     return out;
 }
 
-/// Quantizes, places and refits until nothing is gained.
+/// Quantizes, assigns indices and refits until the error no longer falls.
 /// @param quantize Line -> a struct with the line as it will be decoded in its member `line`
 template <size_t N, typename Quantize>
 auto fitLine(const std::array<Lanes, N>& c, const Lanes& mask, int steps, int refits, const Quantize& quantize)
@@ -158,6 +158,6 @@ auto fitLine(const std::array<Lanes, N>& c, const Lanes& mask, int steps, int re
     return best;
 }
 
-/// Of the 64 ways to split a block in two, `out.size()` that promise the least error, best first (mode 1: no alpha).
+/// The `out.size()` of the 64 two-subset partitions with the least estimated error, best first (mode 1: no alpha).
 void promisingPartitions(const std::array<Lanes, 3>& c, std::span<uint32_t> out);
 } // namespace bc7

@@ -27,7 +27,7 @@ const std::array<std::array<Four, 16>, 16>& membership()
 
 Four broadcast(float x) { return Four{x, x, x, x}; }
 
-/// What a subset varies by across its principal axis: the trace of its covariance less the largest eigenvalue, by two steps
+/// The variance of a subset across its principal axis: the trace of its covariance less the largest eigenvalue, by two steps
 /// of power iteration and a Rayleigh quotient.
 Four residual(const Moments& m)
 {

@@ -1,9 +1,9 @@
 #include "compiler/build_bvh.h"
 
 #include "compiler/bvh_tree.h"
-#include "compiler/large_memory.h"
 #include "compiler/parallel.h"
 #include "format/check.h"
+#include "format/large_memory.h"
 
 #include <embree3/rtcore.h>
 #include <fmt/format.h>
@@ -15,7 +15,7 @@
 
 namespace
 {
-/// What Embree's callbacks need to know.
+/// User data of Embree's callbacks.
 struct Source
 {
     const WorldMesh& mesh;

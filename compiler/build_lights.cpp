@@ -13,7 +13,7 @@
 namespace
 {
 constexpr double kPi = std::numbers::pi;
-// Lights below this share of the total would have a probability that single precision cannot divide by.
+// Lights below this fraction of the total would have a probability that single precision cannot divide by.
 constexpr double kLeastShare = 1e-30;
 
 struct Candidate
@@ -145,9 +145,9 @@ double totalPower(const std::vector<Candidate>& candidates)
 }
 bool isBeam(const Candidate& c) { return c.light.kind == gpu::kLightDirectional || c.light.kind == gpu::kLightEnvironment; }
 
-/// What each light's share of the samples goes by: its power, but beams beside other lights get half of all at most. The
-/// power of a beam is what falls on a disc as wide as the scene; indoors nearly all of that is on the roof, and the lamps
-/// that light the room would get next to no samples.
+/// The weight by which each light is picked: its power, except that directional and environment lights beside local ones get
+/// at most half of all samples. Their power is what falls on a disc as wide as the scene: indoors nearly all of that hits the
+/// roof, and the local lights that light the room would get next to no samples.
 std::vector<double> sampleShares(const std::vector<Candidate>& candidates)
 {
     constexpr double kMostBeams = 0.5;
@@ -169,7 +169,6 @@ std::vector<double> sampleShares(const std::vector<Candidate>& candidates)
 LightTables buildLights(const SceneData& scene)
 {
     LightTables tables;
-    tables.triangle_lights.assign(scene.mesh.triangles.size(), gpu::kNone);
     tables.caustic_targets = findCausticTargets(scene);
 
     std::vector<Candidate> candidates = collect(scene);
@@ -184,11 +183,7 @@ LightTables buildLights(const SceneData& scene)
     {
         Candidate& c = candidates[i];
         c.light.pmf = float(shares[i]);
-        if (c.light.triangle != gpu::kNone)
-        {
-            tables.triangle_lights[c.light.triangle] = uint32_t(tables.lights.size());
-            ++tables.emissive_triangles;
-        }
+        tables.emissive_triangles += c.light.triangle != gpu::kNone ? 1 : 0;
         tables.lights.push_back(c.light);
         tables.powers.push_back(float(c.power));
     }

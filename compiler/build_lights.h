@@ -6,7 +6,6 @@ struct LightTables
 {
     std::vector<gpu::Light> lights;          // punctual, then emissive triangles, then the environment
     std::vector<gpu::AliasEntry> aliases;    // [lights.size()]
-    std::vector<uint32_t> triangle_lights;   // [triangle_count] index into lights or gpu::kNone
     std::vector<gpu::CausticTarget> caustic_targets;
     std::vector<float> powers;               // [lights.size()] W, luminance
     uint32_t emissive_triangles = 0;
@@ -16,5 +15,5 @@ struct LightTables
 /// Power: point 4 pi I; spot over its cone; directional E pi R^2 and environment pi R^2 x radiance integrated over the
 /// sphere, R the radius of the scene's bounding sphere; triangle pi A x mean emission (texture averaged over the
 /// triangle), twice that where it emits on both sides. Lights without power are left out. Lights are picked
-/// in proportion to power; beams (directional and environment) beside other lights for half of all samples at most.
+/// in proportion to power; directional and environment lights beside local ones for at most half of all samples.
 LightTables buildLights(const SceneData& scene);

@@ -1,7 +1,7 @@
 #include "compiler/bvh_tree.h"
-#include "compiler/large_memory.h"
 #include "compiler/parallel.h"
 #include "format/check.h"
+#include "format/large_memory.h"
 
 #include <algorithm>
 #include <unordered_map>
@@ -14,7 +14,7 @@ constexpr uint32_t kWidth = gpu::kBvhWidth;
 constexpr double kNodeCost = 1;
 constexpr double kTriangleCost = 1;
 
-/// What the dynamic program knows of one binary subtree while it goes up.
+/// State of the dynamic program for one binary subtree, bottom-up.
 struct Plan
 {
     std::array<double, kWidth> cost{}; // [i]: least cost of representing it as a forest of at most i + 1 nodes or leaves
@@ -168,7 +168,7 @@ private:
         void add(const BinaryNode& node) { nodes[count++] = &node; }
     };
 
-    /// Appends the at most `count` trees that represent `node`'s children, `share` of them from its first child.
+    /// Appends at most `count` trees that represent `node`'s children, `share` of them from its first child.
     static void distribute(const BinaryNode& node, uint32_t count, uint32_t share, Trees& out)
     {
         forest(*node.children[0], share, out);

@@ -94,7 +94,7 @@ void Cache::store(const ContentHash& key, std::span<const std::span<const std::b
 {
     if (!isOpen())
         return;
-    std::vector<std::byte> joined; // hashed as one
+    std::vector<std::byte> joined; // hashed together
     for (const std::span<const std::byte> part : parts)
         joined.insert(joined.end(), part.begin(), part.end());
     const Header header{kMagic, key, joined.size(), hashOf(joined)};

@@ -10,14 +10,14 @@
 #include <vector>
 
 /// Each result is a file named by its key, the hash of all that it was made from, and is written whole and renamed:
-/// several programs may share a folder. A file that is damaged, foreign or of another key counts as missing. What
-/// cannot be written is made again next time; that is no error. Used from any thread.
+/// several programs may share a folder. A file that is damaged, foreign or of another key counts as missing. A result
+/// that cannot be written is made again next time, without an error. Thread-safe.
 class Cache
 {
 public:
     Cache() = default; // keeps nothing
 
-    /// Makes the folder where it is missing. @return kIo where that cannot be done or written to
+    /// Creates the folder if it is missing. @return kIo if it cannot be created or written to
     static Result<Cache> open(const std::filesystem::path& folder);
 
     Cache(Cache&& other) noexcept;
@@ -29,7 +29,7 @@ public:
     /// @param parts the result's bytes, one part after the other
     void store(const ContentHash& key, std::span<const std::span<const std::byte>> parts) const;
 
-    /// The result of `make()`, a std::vector<uint8_t>, from the folder where it is there.
+    /// The result of `make()`, a std::vector<uint8_t>, from the folder if it is cached.
     template <typename Make>
     std::vector<uint8_t> through(const ContentHash& key, const Make& make) const
     {

@@ -1,4 +1,4 @@
-// Cameras that the file does not bring.
+// Cameras besides those of the file.
 #pragma once
 #include "compiler/flatten.h"
 #include "compiler/scene_data.h"

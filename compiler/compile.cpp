@@ -9,7 +9,6 @@
 #include "compiler/flatten.h"
 #include "compiler/gltf_material.h"
 #include "compiler/import_gltf.h"
-#include "compiler/large_memory.h"
 #include "compiler/light_need.h"
 #include "compiler/package_meta.h"
 #include "compiler/parallel.h"
@@ -28,7 +27,7 @@
 
 namespace
 {
-/// Times the stages and says when each is over.
+/// Times the stages and reports the end of each.
 class Stopwatch
 {
 public:
@@ -52,7 +51,7 @@ private:
     double last_ = 0;
 };
 
-/// Adds the options' views, which are in the file's coordinates, and goes over to the package's.
+/// Adds the options' views, which are in the file's coordinates, and converts everything to the package's.
 Status placeScene(const CompileOptions& options, ImportedScene& imported)
 {
     std::vector<CameraView>& cameras = imported.scene.cameras;
@@ -130,15 +129,6 @@ std::vector<uint32_t> triangleFlags(const SceneData& scene)
     return flags;
 }
 
-std::vector<gpu::Triangle> packTriangles(const SceneData& scene, const LightTables& lights)
-{
-    std::vector<gpu::Triangle> triangles;
-    reserveLarge(triangles, scene.mesh.triangles.size());
-    for (size_t i = 0; i < scene.mesh.triangles.size(); ++i)
-        triangles.push_back({scene.mesh.triangles[i], lights.triangle_lights[i]});
-    return triangles;
-}
-
 template <typename T>
 void addChunk(std::vector<package::ChunkSource>& chunks, uint32_t id, const std::vector<T>& data, uint32_t index = 0)
 {
@@ -151,13 +141,9 @@ writePackage(const CompileOptions& options, const SceneData& scene, const Bvh& b
              const TexturePages& textures, const EnvironmentImportance* importance, const lumicut::fb::MetaT& meta)
 {
     const std::vector<uint8_t> meta_bytes = encodeMeta(meta);
-    const std::vector<gpu::Triangle> triangles = packTriangles(scene, lights);
-    std::vector<package::ChunkSource> chunks;
+    const package::StoredGeometry geometry = foldGeometry(scene.mesh, bvh);
+    std::vector<package::ChunkSource> chunks = geometry.chunks();
     addChunk(chunks, package::kMetaChunk, meta_bytes);
-    addChunk(chunks, package::kBvhNodesChunk, bvh.nodes);
-    addChunk(chunks, package::kBvhTrianglesChunk, bvh.triangles);
-    addChunk(chunks, package::kTrianglesChunk, triangles);
-    addChunk(chunks, package::kVertexAttributesChunk, scene.mesh.attributes);
     addChunk(chunks, package::kMaterialsChunk, scene.materials);
     addChunk(chunks, package::kTextureRefsChunk, textures.refs);
     for (uint32_t page = 0; page < textures.pages.size(); ++page)

@@ -14,10 +14,10 @@
 #include <string>
 #include <vector>
 
-/// Whether the scene gets a sky and a sun besides its own light.
+/// Whether a default sky and sun are added to the scene's own light.
 enum class DefaultLight
 {
-    kAuto, // where its own light would leave the picture black, and no light comes from the command line
+    kAuto, // if the picture would be black without them, and the command line adds no light
     kOn,
     kOff,
 };
@@ -38,7 +38,7 @@ struct CompileOptions
     int zstd_level = 0;              // 0: no compression
     TextureCompression textures = TextureCompression::kBlocks;
     std::vector<std::string> text{}; // the options as given, for the package's provenance
-    const Cache* cache = nullptr;    // where costly results are looked for and kept; null: nowhere
+    const Cache* cache = nullptr;    // of costly results; null: none
     std::function<void(double seconds, const std::string& line)> progress{}; // after each stage; may be empty
 };
 
@@ -48,7 +48,7 @@ struct CompileStage
     double seconds = 0;
 };
 
-/// What was made: the package's META and the sizes and times that do not belong into it.
+/// The result: the package's META, and sizes and times that are not part of it.
 struct CompileReport
 {
     lumicut::fb::MetaT meta;
@@ -70,12 +70,12 @@ struct CompileReport
 };
 
 /// Compiles `options.input` and writes `options.output`, all or nothing. Equal input and options give equal bytes.
-/// @return errors as the stages give them; kDevice where memory runs out. What was damaged is in the error's details where
-///         nothing is left to draw, and where options.strict makes it the error (kInvalid)
+/// @return the stages' errors; kDevice if memory runs out. Damaged items are in the error's details if nothing is left to
+///         draw, and if options.strict makes them the error (kInvalid)
 Result<CompileReport> compile(const CompileOptions& options);
 
-/// What can be known before any work: suffixes, and whether the output's folder can be written to.
+/// Checks that need no work: suffixes, and whether the output's folder can be written to.
 Status checkPaths(const CompileOptions& options);
 
-/// kIo where a file cannot be made at `path`: it is a folder, or its folder is missing or read-only.
+/// kIo if a file cannot be created at `path`: it is a folder, or its folder is missing or read-only.
 Status checkWritable(const std::filesystem::path& path);

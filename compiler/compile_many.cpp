@@ -45,7 +45,7 @@ private:
             return false;
         if (job_.report && !isReportOf(*job_.report, origin->hash))
             return false;
-        if (options_.dependency_file) // make goes by times: without this it would call again and again
+        if (options_.dependency_file) // make compares times: without this it would run the compiler again and again
             utimensat(AT_FDCWD, job_.options.output.c_str(), nullptr, 0);
         provenance_ = std::move(origin->provenance);
         const std::lock_guard lock(printing_);
@@ -131,7 +131,7 @@ ExitCode compileMany(const CompileManyOptions& options)
     std::vector<Run> runs;
     for (const CompileJob& job : options.jobs)
         runs.emplace_back(options, job, printing);
-    // Side by side rather than each on all threads: much of a compilation is one step after the other.
+    // In parallel rather than each on all threads: much of a compilation is sequential.
     const auto side_by_side = unsigned(std::min<size_t>(options.threads, runs.size()));
     thread_limit = side_by_side;
     parallelFor(runs.size(), [&](size_t i) { runs[i].run(options.threads / side_by_side); });

@@ -19,7 +19,7 @@ struct CompileManyOptions
     std::optional<std::filesystem::path> dependency_file{}; // of all packages that are there in the end
 };
 
-/// Compiles every job, however many fail, and prints what became of each. @return the code of the first in order that
+/// Compiles every job, however many fail, and prints the result of each. @return the code of the first in order that
 /// failed
 ExitCode compileMany(const CompileManyOptions& options);
 

@@ -9,7 +9,7 @@
 #include <type_traits>
 #include <vector>
 
-/// XXH3-128: tells content apart that chance made different, not content that somebody forged.
+/// XXH3-128: detects accidental differences, not forgery.
 struct ContentHash
 {
     uint64_t low = 0;
@@ -22,7 +22,7 @@ struct ContentHash
 class Hasher
 {
 public:
-    /// @param what the stage that asks; its results are as good as the sources that this program was built from
+    /// @param what the calling stage; the hash of the sources of this program is part of the key
     explicit Hasher(std::string_view what);
     Hasher(Hasher&&) noexcept;
     ~Hasher();
@@ -50,5 +50,5 @@ private:
 
 ContentHash hashOf(std::span<const std::byte> content);
 
-/// Of the sources of compiler and package format: another compiler may make something else of the same input.
+/// Hash of the sources of compiler and package format: another version may produce other output from the same input.
 std::string_view compilerHash();

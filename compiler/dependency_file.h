@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <vector>
 
-/// A make rule "output: inputs", and an empty rule for each input, so that make does not stop where one is gone.
+/// A make rule "output: inputs", and an empty rule for each input, so that make does not stop if one is gone.
 /// Escaped as GCC does, which make and ninja read alike. @return kUsage for names that neither can hold (line breaks)
 Result<std::string> dependencyRule(const std::filesystem::path& output,
                                    const std::vector<std::filesystem::path>& inputs);

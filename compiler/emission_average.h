@@ -1,4 +1,4 @@
-// What an emissive texture gives off over one triangle, on average.
+// The mean of an emissive texture over one triangle.
 #pragma once
 #include "compiler/scene_data.h"
 

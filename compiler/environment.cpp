@@ -14,8 +14,8 @@ namespace
 {
 constexpr double kPi = std::numbers::pi;
 
-/// The share of the sphere's 4 pi that one texel in `row` of a `width` x `height` map covers.
-double sphereShare(uint32_t width, uint32_t height, uint32_t row)
+/// The fraction of the sphere's 4 pi that one texel in `row` of a `width` x `height` map covers.
+double solidAngleFraction(uint32_t width, uint32_t height, uint32_t row)
 {
     return (std::cos(kPi * row / height) - std::cos(kPi * (row + 1) / height)) / (2.0 * width);
 }
@@ -32,7 +32,7 @@ double tentIntegral(double index, double from, double to)
 }
 
 /// Means of a bilinearly filtered signal over `cells` equal parts.
-/// @param value value(i) of sample i, -1 <= i <= count: outside it repeats or clamps as the caller says
+/// @param value value(i) of sample i, -1 <= i <= count: the caller repeats or clamps at the ends
 template <typename Value, typename Store>
 void filterLine(uint32_t count, uint32_t cells, const Value& value, const Store& store)
 {
@@ -105,13 +105,13 @@ gpu::vec3 averageRadiance(const EnvironmentImage& image)
     std::array<double, 3> sum{};
     for (uint32_t row = 0; row < image.height; ++row)
     {
-        const double share = sphereShare(image.width, image.height, row);
+        const double fraction = solidAngleFraction(image.width, image.height, row);
         for (uint32_t column = 0; column < image.width; ++column)
         {
             const gpu::vec4& texel = image.texels[size_t(row) * image.width + column];
-            sum[0] += share * texel.x;
-            sum[1] += share * texel.y;
-            sum[2] += share * texel.z;
+            sum[0] += fraction * texel.x;
+            sum[1] += fraction * texel.y;
+            sum[2] += fraction * texel.z;
         }
     }
     return {float(sum[0]), float(sum[1]), float(sum[2])};
@@ -128,10 +128,10 @@ EnvironmentImportance buildImportance(const EnvironmentImage& image)
     std::vector<double> weights = filteredLuminance(image, importance.width, importance.height);
     double total = 0;
     for (size_t i = 0; i < weights.size(); ++i)
-        total += weights[i] *= sphereShare(importance.width, importance.height, uint32_t(i / importance.width));
-    if (total == 0) // a black map: any distribution will do, as long as it is one
+        total += weights[i] *= solidAngleFraction(importance.width, importance.height, uint32_t(i / importance.width));
+    if (total == 0) // a black map: any valid distribution will do
         std::fill(weights.begin(), weights.end(), total = 1.0);
-    // However dark beside the rest, what gives light must keep a probability that single precision can divide by.
+    // However dark relative to the rest, texels that emit need a probability that single precision can divide by.
     for (double& weight : weights)
         weight = weight > 0 ? std::max(weight, total * 1e-12) : 0;
     total = std::accumulate(weights.begin(), weights.end(), 0.0);

@@ -15,9 +15,9 @@ struct LoadedEnvironment
     std::vector<std::string> warnings; // sentences that name the file
 };
 
-/// Reads a map and multiplies it by `scale` > 0. What no light can be is replaced and counted in a warning: NaN and
-/// negative radiance by 0, infinite radiance by 65504, the most that a half holds. A picture larger than the limits is
-/// averaged over solid angle, so that its light stays. A cube map becomes equirectangular, each face where its axis is.
+/// Reads a map and multiplies it by `scale` > 0. Invalid values are replaced and counted in a warning: NaN and negative
+/// radiance by 0, infinite radiance by 65504, the largest half. A picture larger than the limits is averaged over solid
+/// angle, which preserves its power. A cube map is resampled to an equirectangular one.
 /// Memory: 16 bytes a texel of the map, in addition as much a pixel of a cube.
 /// @return the readers' errors (image/read_exr.h, image/read_hdr.h), about `path`; kUnsupported for other suffixes
 Result<LoadedEnvironment> loadEnvironment(const std::filesystem::path& path, float scale = 1);

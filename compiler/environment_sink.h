@@ -3,7 +3,7 @@
 #include "compiler/scene_data.h"
 #include "image/picture.h"
 
-/// Counts of pixels that no light can be.
+/// Counts of pixels with invalid values.
 struct Repairs
 {
     uint64_t not_a_number = 0;
@@ -11,7 +11,7 @@ struct Repairs
     uint64_t negative = 0;
 };
 
-/// Which of at most two map texels a pixel falls into along one axis, and the share of each texel that it is.
+/// Which of at most two map texels a pixel falls into along one axis, and the fraction of each texel that it covers.
 struct Coverage
 {
     uint32_t first = 0;
@@ -57,7 +57,7 @@ public:
     Repairs repairs;
 
 private:
-    /// One channel as radiance that can be. @return what it was replaced by
+    /// One channel, made valid. @return its replacement
     float repaired(float value, Repairs& pixel) const;
 
     float scale_;

@@ -2,9 +2,9 @@
 
 #include "compiler/encode.h"
 #include "compiler/gltf_material.h"
-#include "compiler/large_memory.h"
 #include "compiler/tangents.h"
 #include "format/check.h"
+#include "format/large_memory.h"
 
 #include <fmt/format.h>
 
@@ -54,7 +54,7 @@ public:
         return hash;
     }
 
-    /// The table is larger than caches: says that add() will come to this hash soon.
+    /// Prefetches the entry of a hash that add() will need soon: the table is larger than caches.
     void prefetch(uint64_t hash) const { __builtin_prefetch(&slots_[hash & (slots_.size() - 1)]); }
 
     /// Adds triangle `index` unless an equal one is there. @return whether it was added
@@ -173,8 +173,8 @@ private:
             tangents_.push_back(unitOrZero(to_world.vector({t.x, t.y, t.z})));
     }
 
-    /// Whether the normals of all three corners are behind the triangle. Those that graze it are left to shading, which
-    /// bends normals to the viewer's side: where faces meet smoothly at right angles rounding decides about them.
+    /// Whether the normals of all three corners are behind the triangle. Nearly tangential ones are left to shading, which
+    /// bends normals to the viewer's side: where faces meet smoothly at right angles, their sign depends on rounding.
     bool opposesWinding(gpu::uvec3 t, const Vec3d& facing) const
     {
         constexpr double kBehind = -0.05; // sine of 3 degrees
@@ -222,7 +222,7 @@ private:
             flipped_triangles_ += flipped;
             return;
         }
-        ++counts_.duplicate_triangles; // take it back, with the vertices it brought
+        ++counts_.duplicate_triangles; // remove it with the vertices added for it
         mesh_.triangles.pop_back();
         mesh_.materials.pop_back();
         mesh_.objects.pop_back();

@@ -1,4 +1,4 @@
-// Puts every object where it stands: one static triangle mesh in world space, cleaned of what rays cannot use.
+// Transforms every object into one static triangle mesh in world space, without triangles that rays cannot hit.
 #pragma once
 #include "compiler/import_gltf.h"
 

@@ -1,4 +1,4 @@
-// A glTF file's JSON and binary chunk, before anything is made of them.
+// A glTF file's JSON and binary chunk, uninterpreted.
 #pragma once
 #include "format/result.h"
 
@@ -22,5 +22,5 @@ struct GltfDocument
     std::optional<ByteView> bin; // the BIN chunk of a binary glTF, borrowed from the file's bytes
 };
 
-/// Takes a .gltf or .glb file apart. @return kInvalid where it is no glTF, kUnsupported for another version of it
+/// Splits a .gltf or .glb file into its parts. @return kInvalid if it is no glTF, kUnsupported for another version of it
 Result<GltfDocument> parseDocument(const std::vector<unsigned char>& bytes);

@@ -1,4 +1,4 @@
-// Which glTF extensions the compiler honours.
+// Which glTF extensions the compiler supports.
 #pragma once
 #include "compiler/warnings.h"
 
@@ -7,6 +7,6 @@
 #include <string>
 #include <vector>
 
-/// @return kUnsupported naming the first required extension that is not honoured; otherwise adds one warning that
+/// @return kUnsupported naming the first required extension that is not supported; otherwise adds one warning that
 ///         lists what the file uses and the compiler drops
 Status checkExtensions(const nlohmann::json& document, Warnings& warnings);

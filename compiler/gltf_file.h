@@ -34,7 +34,7 @@ struct GltfSkin
 
 struct GltfFile
 {
-    std::shared_ptr<InputFiles> files; // relative URIs start in its folder; knows all that were read
+    std::shared_ptr<InputFiles> files; // relative URIs start in its folder; records all that were read
     tinygltf::Model model;             // buffers loaded; indices between its parts as after repairGltf(); no images
                                        // and skins
     std::vector<GltfImage> images;     // as in the file

@@ -1,4 +1,4 @@
-// What a glTF file holds that its user can choose from.
+// Items of a glTF file that its user can select.
 #pragma once
 #include "format/result.h"
 

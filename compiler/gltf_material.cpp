@@ -71,7 +71,7 @@ uint32_t wrapMode(int gltf_wrap)
                                                                 : gpu::kWrapRepeat;
 }
 
-/// Reads texture references, which repairGltf() has seen: they name textures and images that exist.
+/// Reads texture references, which repairGltf() has checked: their textures and images exist.
 class TextureReader
 {
 public:
@@ -127,7 +127,7 @@ private:
         const auto ktx2 = textures[size_t(texture)].extensions.find("KHR_texture_basisu");
         if (source < 0 && ktx2 != textures[size_t(texture)].extensions.end() && ktx2->second.Get("source").IsInt())
             source = ktx2->second.Get("source").GetNumberAsInt();
-        if (source == -1 && reported_.insert(texture).second) // allowed: an extension that is not honoured may hold it
+        if (source == -1 && reported_.insert(texture).second) // allowed: an extension that is not supported may hold it
             scene_.warnings.push_back({WarningKind::kLeftOut, fmt::format("/textures/{}", texture),
                                        "a texture names no image of a kind that can be read (PNG, JPEG, WebP, KTX2)",
                                        "its materials go without it"});
@@ -217,7 +217,7 @@ void readEmission(const tinygltf::Material& from, const Value* strength, Texture
         m.emissive_texture = textures.use(from.emissiveTexture.index, from.emissiveTexture.texCoord,
                                           from.emissiveTexture.extensions, true);
     if (from.emissiveTexture.index != -1 && m.emissive_texture == gpu::kNone)
-        m.emission = {}; // without its map, which says what glows, all of the surface would
+        m.emission = {}; // without its texture, all of the surface would emit
 }
 
 void readTransmission(const Value& transmission, const Value* volume, TextureReader& textures, gpu::Material& m)
@@ -354,7 +354,7 @@ gpu::Material readMaterial(const tinygltf::Material& from, TextureReader& textur
     return m;
 }
 
-/// What a material has in place of a texture that cannot be read.
+/// What replaces a texture that cannot be read.
 constexpr std::pair<uint32_t gpu::Material::*, std::string_view> kStandIns[] = {
     {&gpu::Material::base_color_texture, "the base colour factor alone"},
     {&gpu::Material::metallic_roughness_texture, "the metallic and roughness factors alone"},

@@ -7,8 +7,8 @@
 void importMaterials(const GltfFile& file, std::span<const int> used, SceneData& scene,
                      std::vector<ImageRequest>& requests);
 
-/// Sets the scene's images, [request_count] as decoded. Materials lose textures without one, a warning for each says what
-/// stands in its place: its factor, for normal maps the surface's own normals, for emissive ones no emission.
+/// Sets the scene's images, [request_count] as decoded. Textures without one are removed from materials, with a warning that
+/// names the replacement: the factor; for normal maps the surface's normals; for emissive textures no emission.
 void takeImages(std::vector<DecodedImage> decoded, SceneData& scene);
 
 /// The texture along whose coordinates a material's tangents lie, an index into SceneData::texture_uses: gpu::kNone where it

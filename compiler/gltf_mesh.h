@@ -8,7 +8,7 @@
 #include <span>
 #include <string>
 
-/// The shape in which a primitive is wanted.
+/// The properties that an imported primitive needs.
 struct PrimitiveShape
 {
     std::span<const double> morph_weights{}; // [target]; those that are missing are 0

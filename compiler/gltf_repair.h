@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-/// Every damaged item becomes one that does no harm, and a warning says what, where and what stands in its place:
+/// Every damaged item is replaced by a harmless one, with a warning: defect, place and replacement:
 /// indices that name nothing go, numbers out of range become allowed ones, properties of a wrong type get their
 /// default; primitives, cameras and lights that cannot be understood go with every reference to them. Items keep their
 /// numbers. Afterwards all top-level lists are arrays of objects; indices between nodes, meshes, primitives, materials,

@@ -195,11 +195,9 @@ private:
     SceneNodes nodes_;
 };
 
-/// The scene that `wanted` names or numbers; where it is empty the file's default, else its first.
+/// The scene of that name or index; if `wanted` is empty the file's default, without one its first.
 Result<size_t> chooseScene(const tinygltf::Model& model, const std::string& wanted)
 {
-    if (model.scenes.empty())
-        return Error{ExitCode::kInvalid, "it has no scene, so there is nothing to compile (/scenes)"};
     if (wanted.empty())
         return size_t(model.defaultScene == -1 ? 0 : model.defaultScene);
     for (size_t i = 0; i < model.scenes.size(); ++i)
@@ -215,10 +213,35 @@ Result<size_t> chooseScene(const tinygltf::Model& model, const std::string& want
         names += fmt::format("{}\"{}\" ({})", i == 0 ? "" : ", ", model.scenes[i].name, i);
     return Error{ExitCode::kUsage, fmt::format("there is no scene \"{}\"; the file has {}", wanted, names)};
 }
+
+/// Nodes that are below no other.
+std::vector<int> rootNodes(const tinygltf::Model& model)
+{
+    std::vector<bool> below(model.nodes.size());
+    for (const tinygltf::Node& node : model.nodes)
+        for (const int child : node.children)
+            below[size_t(child)] = true;
+    std::vector<int> roots;
+    for (size_t i = 0; i < below.size(); ++i)
+        if (!below[i])
+            roots.push_back(int(i));
+    return roots;
+}
 } // namespace
 
 Result<SceneNodes> walkScene(const tinygltf::Model& model, const std::string& wanted)
 {
+    if (model.scenes.empty())
+    {
+        const std::vector<int> roots = rootNodes(model);
+        if (roots.empty())
+            return Error{ExitCode::kInvalid, "it has no scene and no node, so there is nothing to compile (/scenes)"};
+        if (!wanted.empty())
+            return Error{ExitCode::kUsage, fmt::format("there is no scene \"{}\"; the file has none", wanted)};
+        SceneNodes nodes = Walk(model).run(roots);
+        nodes.warnings.push_back("the file has no scene; all its nodes are compiled");
+        return nodes;
+    }
     const Result<size_t> scene = chooseScene(model, wanted);
     if (!scene)
         return scene.error();

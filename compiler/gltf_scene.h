@@ -22,7 +22,7 @@ struct SceneNodes
     Warnings warnings;
 };
 
-/// What cannot be placed (a transform that is not finite, say) is left out with a warning.
+/// Items that cannot be placed (with a transform that is not finite, for example) are left out with a warning.
 /// @return kInvalid where there is no scene, kUsage listing the scenes where none is named `scene`
 /// @param scene name or index; empty: the file's default
 Result<SceneNodes> walkScene(const tinygltf::Model& model, const std::string& scene = "");

@@ -26,7 +26,7 @@ std::string shown(const json& value)
                              : value.dump(-1, ' ', false, json::error_handler_t::replace).substr(0, 40);
 }
 
-/// Gives a member another value and says so; `stand_in` names it.
+/// Replaces a member's value and adds a warning; `stand_in` describes the new value.
 void replace(const JsonPlace& place, const char* key, const json& value, const std::string& stand_in, Warnings& warnings)
 {
     const json* old = place.find(key);
@@ -242,7 +242,7 @@ bool repairCamera(const JsonPlace& camera, Warnings& warnings)
     }
     warnings.push_back({WarningKind::kMalformed, camera.pointer,
                         type != nullptr && (*type == "perspective" || *type == "orthographic")
-                            ? fmt::format("a camera says nothing of its lens ({})", type->get<std::string>())
+                            ? fmt::format("a camera has no {} parameters", type->get<std::string>())
                             : fmt::format("camera type {} does not exist", type == nullptr ? "\"\"" : shown(*type)),
                         "the camera is left out"});
     return false;
@@ -269,7 +269,7 @@ bool repairLight(const JsonPlace& light, Warnings& warnings)
     json* spot = light.find("spot");
     if (spot == nullptr || !spot->is_object())
     {
-        warnings.push_back({WarningKind::kMalformed, light.pointer, "a spot says nothing of its cone",
+        warnings.push_back({WarningKind::kMalformed, light.pointer, "a spot light has no cone",
                             "its angles are 0 and 45 degrees"});
         light.object["spot"] = json::object();
     }

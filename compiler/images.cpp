@@ -25,7 +25,7 @@ Error undecodable(const GltfImage& image, std::string_view reason)
     return {ExitCode::kInvalid, fmt::format("texture \"{}\" cannot be decoded: {}", image.name.substr(0, 200), reason)};
 }
 
-/// What other picture files begin with, for a sentence that helps.
+/// The first bytes of other picture formats, for a helpful message.
 std::string_view formatName(std::string_view start)
 {
     struct Magic
@@ -46,7 +46,7 @@ std::string_view formatName(std::string_view start)
     return {};
 }
 
-/// stb's reason, or one that says more.
+/// stb's reason, or a more specific one.
 std::string decoderReason(bool png)
 {
     const char* reason = stbi_failure_reason();
@@ -70,7 +70,7 @@ Result<ByteView> imageBytes(const GltfFile& file, const GltfImage& image, Bytes&
     return ByteView{storage.data(), storage.size(), 0};
 }
 
-/// Sizes `out` if the sides are sane and all images together stay within bounds; before any texel is decoded.
+/// Resizes `out` if the sides and the total of all images are within the limits; before any texel is decoded.
 Status reserve(int width, int height, const GltfImage& image, std::atomic<uint64_t>& texels, TextureImage& out)
 {
     if (width <= 0 || height <= 0 || uint32_t(std::max(width, height)) > kMaxSide)
@@ -154,7 +154,7 @@ Status decodeKtx2File(const ByteView& bytes, const GltfImage& image, std::atomic
     return Success{};
 }
 
-/// Colours that a file holds as light take the encoding that colour textures have.
+/// Encodes linear colours as colour textures are encoded.
 void encodeLight(TextureImage& image)
 {
     for (size_t i = 0; i < image.deep.size(); ++i)

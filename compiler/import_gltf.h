@@ -1,4 +1,4 @@
-// glTF in, scene out: everything that the file says, in object space and with images still encoded.
+// Imports a glTF file as a scene, in object space and with images still encoded.
 #pragma once
 #include "compiler/gltf_scene.h"
 #include "compiler/images.h"
@@ -21,7 +21,7 @@ struct ImportedScene
     std::vector<ImageRequest> images;        // what SceneData::images is to hold
 };
 
-/// What to take of a file that holds more than one thing.
+/// Selection from a file with several scenes or variants.
 struct ImportChoice
 {
     std::string scene;   // name or index; empty: the file's default
@@ -29,5 +29,5 @@ struct ImportChoice
 };
 
 /// Reads geometry, materials, lights and cameras of one scene of the file, in the pose that it shows at rest.
-/// @return kUsage listing what there is where a choice names nothing
+/// @return kUsage with a list if a choice does not exist
 Result<ImportedScene> importScene(const GltfFile& file, const ImportChoice& choice = {});

@@ -1,4 +1,4 @@
-// The files of one compilation: which ones were asked for, and what they held.
+// The files of one compilation: which ones were requested, and the hashes of their contents.
 #pragma once
 #include "compiler/content_hash.h"
 #include "format/result.h"
@@ -22,8 +22,8 @@ public:
     /// @param folder where relative names start
     explicit InputFiles(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
-    /// A whole regular file, noted down with what it holds, or kIo with the system's reason, noted down as missing.
-    /// From any thread.
+    /// Reads a regular file and records its hash, or returns kIo with the system's reason and records it as missing.
+    /// Thread-safe.
     Result<std::vector<unsigned char>> read(const std::string& name);
 
     /// By name, each once.
@@ -37,5 +37,5 @@ private:
     std::map<std::string, std::optional<ContentHash>> read_;
 };
 
-/// What a file holds now; nothing where it cannot be read.
+/// The hash of a file's present content; nothing if it cannot be read.
 std::optional<ContentHash> contentOf(const std::filesystem::path& path);

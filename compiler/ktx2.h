@@ -16,11 +16,11 @@ struct Ktx2Image
     bool linear_light = false;       // floats: colours are light, not sRGB-encoded; clamped to 0 .. 1
 };
 
-/// Starts like a KTX 2.0 file.
+/// Whether the bytes start like a KTX 2.0 file.
 bool isKtx2(std::span<const std::byte> bytes);
 
 /// Formats: 8- and 16-bit unorm and 16- and 32-bit floats of one to four channels, BC1 to BC5, BC7; plain, zstd or zlib.
-/// @param accept is asked for leave before texels are allocated
+/// @param accept is called before texels are allocated, and may refuse
 /// @return kInvalid for a damaged file, kUnsupported for other formats and for arrays, cubes and volumes; sentences without a
 ///         subject ("it is ...")
 Result<Ktx2Image> decodeKtx2(std::span<const std::byte> bytes,

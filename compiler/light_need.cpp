@@ -22,7 +22,7 @@ constexpr double kDark = 0.00127;
 constexpr double kDim = 0.00604;
 constexpr uint32_t kColumns = 24, kRows = 14; // of a camera's picture, 16:9 or nearly
 constexpr size_t kMostCameras = 8;
-constexpr size_t kMostLights = 256; // asked from each point
+constexpr size_t kMostLights = 256; // evaluated at each point
 constexpr size_t kMostSurfaces = 256;
 
 struct Point
@@ -173,8 +173,8 @@ double spreadPower(const WorldMesh& mesh, const LightTables& lights)
     return power / (4 * kPi * std::max(dot(diagonal, diagonal), 1e-30));
 }
 
-/// Irradiance at `point` by light `i`, were there nothing else. Lamps count as if they were aimed at it and it at them: who
-/// puts a lamp into a scene wants its light and no other, be it a narrow beam or one from behind.
+/// Unoccluded irradiance at `point` by light `i`. Local lights count as if they and the point faced each other: a scene with
+/// a narrow spot, or a lamp that lights from behind, is lit on purpose and gets no default light.
 double irradiance(const LightTables& lights, size_t i, const Point& point, double environment)
 {
     const gpu::Light& light = lights.lights[i];
@@ -221,7 +221,7 @@ std::vector<std::pair<size_t, double>> askedLights(const LightTables& lights)
     return asked;
 }
 
-/// What the best lit tenth of `points` reflects at least.
+/// The lower bound of what the brightest tenth of `points` reflects.
 double bestTenth(const std::vector<Point>& points, const LightTables& lights, double environment, double everywhere)
 {
     const auto asked = askedLights(lights);

@@ -7,16 +7,16 @@
 
 struct LightNeed
 {
-    double radiance = 0; // W/(m^2 sr), luminance: what the best lit tenth of the visible surfaces reflects at least
+    double radiance = 0; // W/(m^2 sr), luminance: the lower bound of what the brightest tenth of the visible points reflects
     bool dark = false;   // the player's default display transform rounds that to black
     bool dim = false;    // ... shows it as 8 of 255 at most
-    std::string sentence; // full, where one of them is set
+    std::string sentence; // a full sentence if dark or dim is set
 };
 
-/// Looks from every camera (8 at most) through a grid of pixels. At each point that it sees, irradiance is the sum of what
-/// every light would send if nothing were in the way (lamps as if aimed at the point), and, for light that comes by way of
-/// other surfaces, the power of local lights over a sphere with the scene's diagonal as radius. Surfaces reflect it with an
-/// albedo of 0.5, and as much again between them. Where the cameras see nothing, triangles all over the scene count. It is
-/// made of ratios of areas and of powers to areas, so the scene's size does not matter.
+/// Traces a grid of rays from every camera (8 at most). At each visible point, irradiance is the sum of the lights'
+/// unoccluded irradiance (local lights as if aimed at the point) and, for indirect light, the power of local lights over a
+/// sphere with the scene's diagonal as radius. Surfaces reflect it with an albedo of 0.5, and interreflection doubles that.
+/// If no ray hits anything, points on triangles all over the scene are used. The estimate consists of ratios of areas and of
+/// powers to areas, so it does not depend on the scene's size.
 /// @param lights as built from `scene`, which has at least one triangle
 LightNeed judgeLight(const SceneData& scene, const Bvh& bvh, const LightTables& lights);

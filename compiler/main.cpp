@@ -52,24 +52,24 @@ void declare(CLI::App& app, Arguments& a)
     app.add_option("--variant", a.variant, "Variant of the file's materials (KHR_materials_variants)");
     auto* env = app.add_option("--env", a.environment, "Environment: equirectangular .exr or .hdr, W/(m^2 sr)");
     app.add_option("--env-rotate", a.environment_rotation,
-                   "Degrees by which the environment is turned about +Y, counter-clockwise seen from above")
+                   "Rotation of the environment about +Y in degrees, counter-clockwise seen from above")
         ->needs(env);
     app.add_option("--env-scale", a.environment_scale, "Factor for the environment's radiance")->needs(env);
-    app.add_option("--sun", a.sun, "Sun: DX,DY,DZ,LUX; the direction is the way its light travels");
+    app.add_option("--sun", a.sun, "Directional light: DX,DY,DZ,LUX; the direction is the one its light travels in");
     app.add_option(
            "--view", a.views,
            "Camera: NAME=EX,EY,EZ,TX,TY,TZ,YFOV; eye, target (metres), vertical field of view (degrees). Repeatable")
-        ->allow_extra_args(false); // else it takes the scene after it
+        ->allow_extra_args(false); // otherwise it would take the scene after it
     app.add_option("--default-light", a.default_light,
-                   "auto, on or off: a sky and a sun besides the scene's own light; auto: where that would leave the "
-                   "picture black")
+                   "auto, on or off: add a sky and a sun to the scene's own light; auto: if the picture would be black "
+                   "without them")
         ->check(CLI::IsMember({"auto", "on", "off"}))
         ->capture_default_str();
     app.add_flag_callback("--no-default-light",
                           [] { throw CLI::ValidationError("--no-default-light", "it is --default-light off now"); })
         ->group(""); // not listed
     app.add_flag("--strict", a.strict, "Treat damaged items of the scene as errors");
-    app.add_option("--report", a.report, "Write what was made as JSON; of several scenes, into this folder");
+    app.add_option("--report", a.report, "Write a report as JSON; for several scenes, into this folder");
     app.add_option("--compress", a.compress, "none, zstd or zstd:LEVEL (1-19)")->capture_default_str();
     app.add_option("--textures", a.textures, "bc: block-compressed (BC7, BC5, BC4); raw: RGBA8")
         ->check(CLI::IsMember({"bc", "raw"}))
@@ -78,13 +78,13 @@ void declare(CLI::App& app, Arguments& a)
                                      "Print the scenes, variants, cameras, animations, skins, lights "
                                      "and materials of the file, and compile nothing");
     app.add_flag("--json", a.json, "With --list: print JSON")->needs(list);
-    app.add_option("--deps", a.dependencies, "Write what the packages were made from, for make and ninja");
-    app.add_option("--cache", a.cache, "Folder that keeps results of costly stages for the next run");
+    app.add_option("--deps", a.dependencies, "Write the files that the packages depend on, for make and ninja");
+    app.add_option("--cache", a.cache, "Folder of cached results for the next run");
     app.add_option("--cache-size", a.cache_bytes, "Size to which the folder is trimmed (k, m, g, ...)")
         ->transform(CLI::AsSizeValue(false))
         ->default_str("4g");
-    app.add_option("-j,--jobs", a.threads, "Threads in all (default: as many as cores)")->check(CLI::Range(1, 1024));
-    app.add_flag("-f,--force", a.force, "Compile what is up to date, too");
+    app.add_option("-j,--jobs", a.threads, "Total number of threads (default: as many as cores)")->check(CLI::Range(1, 1024));
+    app.add_flag("-f,--force", a.force, "Compile up-to-date packages, too");
     app.add_flag("-q,--quiet", a.quiet, "Print errors only");
     app.set_version_flag("--version", "lumicut-compile " LUMICUT_VERSION);
 }

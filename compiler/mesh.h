@@ -1,4 +1,4 @@
-// Triangle meshes in object space, as read from one glTF primitive, and what is made where the file left it out.
+// Triangle meshes in object space, as read from one glTF primitive, and the attributes generated where it has none.
 #pragma once
 #include "compiler/scene_data.h"
 

@@ -126,7 +126,7 @@ void MipChain::keepCoverage()
             alphas[i] = level.rgba[4 * i + 3];
         const size_t wanted = (passing * alphas.size() + count / 2) / count;
         if (wanted == 0 || wanted == alphas.size())
-            continue; // all or nothing passes: averages know that, too, but for a fringe
+            continue; // all or nothing passes: averages preserve that except at the border
         std::nth_element(alphas.begin(), alphas.begin() + ptrdiff_t(wanted - 1), alphas.end(), std::greater<>());
         const float last_passing = alphas[wanted - 1];
         if (last_passing > 0) // a little more than the cutoff, so that rounding to 8 bits does not fall below it

@@ -6,7 +6,7 @@
 #include <array>
 #include <vector>
 
-/// Scales the vector that a normal map's texel stands for (0 to 255 is -1 to 1) to unit length; (0, 0, 1) where it has none.
+/// Scales the vector that a normal map's texel encodes (0 to 255 is -1 to 1) to unit length; (0, 0, 1) if that is impossible.
 void normalizeTexel(std::array<float, 4>& texel);
 
 class MipChain

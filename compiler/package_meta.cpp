@@ -128,3 +128,15 @@ std::vector<uint8_t> encodeMeta(const fb::MetaT& meta)
     fb::FinishMetaBuffer(builder, fb::Meta::Pack(builder, &meta));
     return {builder.GetBufferPointer(), builder.GetBufferPointer() + builder.GetSize()};
 }
+
+package::StoredGeometry foldGeometry(const WorldMesh& mesh, const Bvh& bvh)
+{
+    const Bounds extent = bounds(mesh);
+    return package::foldGeometry({.bounds_min = extent.min,
+                                  .bounds_max = extent.max,
+                                  .nodes = bvh.nodes,
+                                  .leaf_triangles = bvh.triangles,
+                                  .triangles = mesh.triangles,
+                                  .positions = mesh.positions,
+                                  .attributes = mesh.attributes});
+}

@@ -1,4 +1,4 @@
-// Fills the package's META chunk from what the compiler made.
+// What the compiler made as the package has it: META, and the chunks of geometry.
 #pragma once
 #include "compiler/build_bvh.h"
 #include "compiler/build_lights.h"
@@ -6,6 +6,7 @@
 #include "compiler/environment.h"
 #include "compiler/input_files.h"
 #include "compiler/texture_pages.h"
+#include "format/fold_geometry.h"
 
 /// @param importance null without environment
 lumicut::fb::MetaT makeMeta(const CompileOptions& options, const SceneData& scene, const Bvh& bvh,
@@ -18,3 +19,6 @@ void noteInputs(const std::vector<InputFile>& files, const std::optional<Content
 
 /// The META chunk's bytes.
 std::vector<uint8_t> encodeMeta(const lumicut::fb::MetaT& meta);
+
+/// The mesh and its hierarchy; refers to the mesh's positions.
+package::StoredGeometry foldGeometry(const WorldMesh& mesh, const Bvh& bvh);

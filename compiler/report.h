@@ -1,4 +1,4 @@
-// What the compiler tells about a finished package: a summary for people, JSON for programs.
+// The report on a finished package: a summary as text, and JSON.
 #pragma once
 #include "compiler/compile.h"
 

@@ -1,4 +1,4 @@
-// What the compiler knows of a scene between reading glTF and writing the package.
+// The scene between reading glTF and writing the package.
 #pragma once
 #include "compiler/warnings.h"
 #include "format/gpu_scene.h"
@@ -18,7 +18,7 @@ struct TextureImage
     bool srgb = false;           // base colour, emissive, specular colour
     std::vector<uint8_t> texels; // [4 * width * height]
     std::vector<uint16_t> deep{}; // the same in 16 bits where the file has more than 8, else empty
-    bool linear_light = false;     // colours are light, in spite of what materials want; until decodeImages() returns
+    bool linear_light = false;     // colours are linear light, whatever `srgb` says; until decodeImages() returns
 };
 
 /// One use of a texture by a material; becomes a gpu::TextureRef once images have found their page and layer.
@@ -80,7 +80,7 @@ struct CameraView
     float far_plane = 0;           // distance along forward behind which nothing is seen; 0: there is none
 };
 
-/// Counts of what import and clean-up did; they end in the report and in Meta.statistics.
+/// Counts of what import and clean-up did, for the report and for Meta.statistics.
 struct ImportCounts
 {
     uint64_t degenerate_triangles = 0;

@@ -1,5 +1,5 @@
-// Tangents where the file left them out, as the MikkTSpace convention has them, so that normal maps look as their baker
-// meant them to (M. Mikkelsen, "Simulation of Wrinkled Surfaces Revisited", 2008; glTF 2.0, 3.7.2.1).
+// Generates missing tangents by the MikkTSpace convention, for which normal maps are baked
+// (M. Mikkelsen, "Simulation of Wrinkled Surfaces Revisited", 2008; glTF 2.0, 3.7.2.1).
 #pragma once
 #include "compiler/mesh.h"
 

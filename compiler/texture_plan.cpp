@@ -17,7 +17,7 @@ namespace
 using package::TextureEncoding;
 constexpr size_t kMaxLayers = 2048; // of a page
 
-/// What images of one plain page have in common; ordered, so that pages come in one order always.
+/// What images of one plain page have in common; ordered, so that the order of pages is deterministic.
 struct PageKey
 {
     TextureEncoding encoding;
@@ -29,7 +29,7 @@ struct PageKey
 using Groups = std::map<PageKey, std::vector<size_t>>; // image indices
 using Group = Groups::value_type;
 
-/// Of unit vectors more than one in a hundred looks into the surface: two channels cannot tell.
+/// Whether more than one in a hundred unit vectors points into the surface: two channels cannot store the sign of z.
 bool hasBackwardNormals(const TextureImage& image)
 {
     size_t backward = 0;
@@ -73,7 +73,7 @@ std::vector<size_t> findEqual(const std::vector<TextureImage>& images, std::span
 
 TileSize sizeOf(const PageKey& key) { return {key.width, key.height}; }
 
-/// The most worthy of a page of their own first: what no tile can hold, then what takes the most memory.
+/// The order in which images get a page of their own: first those that no tile can hold, then by memory.
 std::vector<const Group*> byWorth(const Groups& groups)
 {
     std::vector<const Group*> order;

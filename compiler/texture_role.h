@@ -1,4 +1,4 @@
-// What materials read of an image: decides how it is filtered and compressed.
+// What materials read from an image, which determines how it is filtered and compressed.
 #pragma once
 #include "compiler/scene_data.h"
 
@@ -12,7 +12,7 @@ struct TextureRole
 {
     uint32_t channels = 0;       // gpu::kRed .. that any material reads
     bool normal = false;         // unit vectors and nothing else
-    bool covers = false;         // alpha says how much of the colour is there, for all that read it
+    bool covers = false;         // alpha is the coverage of the colour, for every material that reads it
     float coverage_cutoff = 0;   // what passes the alpha test; 0: no material tests it
     auto operator<=>(const TextureRole&) const = default;
 };

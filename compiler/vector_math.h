@@ -1,4 +1,4 @@
-// The little vector arithmetic that building hierarchies and lights needs.
+// Vector arithmetic for building hierarchies and lights.
 #pragma once
 #include "format/gpu_types.h"
 

@@ -62,17 +62,17 @@ std::string sentence(const Warning& warning)
 std::vector<std::string> sentences(const Warnings& warnings)
 {
     constexpr size_t kMostAlone = 3;
-    using Likeness = std::tuple<WarningKind, std::string, std::string>; // kind, stand-in, message where it has no place
-    const auto likeness = [](const Warning& w)
-    { return Likeness{w.kind, w.stand_in, w.pointer.empty() ? w.message : std::string()}; };
-    std::map<Likeness, size_t> counts;
+    using Group = std::tuple<WarningKind, std::string, std::string>; // kind, stand-in, message if it has no pointer
+    const auto groupOf = [](const Warning& w)
+    { return Group{w.kind, w.stand_in, w.pointer.empty() ? w.message : std::string()}; };
+    std::map<Group, size_t> counts;
     for (const Warning& warning : warnings)
-        ++counts[likeness(warning)];
+        ++counts[groupOf(warning)];
     std::vector<std::string> lines;
     for (const Warning& warning : warnings)
     {
-        size_t& count = counts[likeness(warning)];
-        if (count == 0) // told with the first
+        size_t& count = counts[groupOf(warning)];
+        if (count == 0) // already in the line of the first of its group
             continue;
         lines.push_back(sentence(warning));
         if (count <= kMostAlone)

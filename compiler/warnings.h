@@ -1,4 +1,4 @@
-// What the compiler tells of a scene besides the package: what it found damaged, left out or approximated.
+// Warnings about a scene: items that are damaged, left out or approximated.
 #pragma once
 #include "format/result.h"
 
@@ -50,7 +50,7 @@ using Warnings = std::vector<Warning>; // in the order in which they were found
 /// "message; stand-in (pointer)".
 std::string sentence(const Warning& warning);
 
-/// For people: more than three warnings of one kind and with one stand-in become the first, "and 12 more like it".
+/// Text output: more than three warnings of one kind and with one stand-in become the first, "and 12 more like it".
 std::vector<std::string> sentences(const Warnings& warnings);
 
 /// Those that are damage.

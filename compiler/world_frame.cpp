@@ -130,8 +130,8 @@ Vec3d nearestPlace(const ImportedScene& imported, const Vec3d& from)
     return best;
 }
 
-/// Where precision is wanted. A camera may stand far off what it shows (an orthographic one anywhere), so it is the
-/// place of the scene next to the cameras that counts.
+/// Where precision is needed: at the part of the scene nearest to the cameras. A camera itself may be far from what it shows
+/// (an orthographic one anywhere).
 Vec3d centerOf(const ImportedScene& imported, const std::vector<Vec3d>& samples)
 {
     if (imported.scene.cameras.empty())

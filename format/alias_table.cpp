@@ -9,7 +9,7 @@ std::vector<gpu::AliasEntry> buildAliasTable(std::span<const double> weights)
     const double total = std::accumulate(weights.begin(), weights.end(), 0.0);
     check(total > 0, "total weight {}", total);
 
-    std::vector<double> scaled; // 1 is an even share
+    std::vector<double> scaled; // 1 is the mean weight
     std::vector<uint32_t> small;
     std::vector<uint32_t> large;
     for (uint32_t i = 0; i < weights.size(); ++i)
@@ -32,7 +32,7 @@ std::vector<gpu::AliasEntry> buildAliasTable(std::span<const double> weights)
             small.push_back(rich);
         }
     }
-    // What is left differs from an even share by rounding only.
+    // The rest differs from the mean weight by rounding only.
     for (const std::vector<uint32_t>* rest : {&small, &large})
     {
         for (const uint32_t i : *rest)

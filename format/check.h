@@ -1,4 +1,4 @@
-// check(): bugs of our own stop the program with the values that show them, in release builds too.
+// check(): a bug stops the program and prints the values that reveal it, in release builds, too.
 #pragma once
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // The bridge that lets one header describe a struct to both C++ and GLSL.
-// Every GPU struct uses scalar layout, so C++ members sit exactly where the shader reads them.
+// Every GPU struct uses scalar layout, so C++ members have the offsets that the shader reads.
 #ifndef FORMAT_GPU_TYPES_H
 #define FORMAT_GPU_TYPES_H
 

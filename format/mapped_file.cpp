@@ -28,7 +28,7 @@ Error ioError(const char* what)
 
 Result<MappedFile> MappedFile::open(const std::filesystem::path& path)
 {
-    // O_NONBLOCK: a named pipe must be refused, not waited for.
+    // O_NONBLOCK: opening a named pipe must fail, not block.
     const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
     if (fd < 0)
         return ioError("open the file");

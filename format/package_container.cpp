@@ -91,11 +91,10 @@ Result<std::vector<ChunkEntry>> readTable(std::span<const std::byte> file, const
 
 bool isKnown(uint32_t id)
 {
-    constexpr std::array kKnown{kMetaChunk,          kBvhNodesChunk,    kBvhTrianglesChunk,
-                                kTrianglesChunk,     kMaterialsChunk,   kVertexAttributesChunk,
-                                kTextureRefsChunk,   kTexturePageChunk, kLightsChunk,
-                                kLightAliasesChunk,  kEnvironmentChunk, kEnvironmentTexelsChunk,
-                                kCausticTargetsChunk};
+    constexpr std::array kKnown{kMetaChunk,         kBvhNodesChunk,         kLeafTrianglesChunk, kTrianglesChunk,
+                                kPositionsChunk,    kVertexAttributesChunk, kVertexExtrasChunk,  kMaterialsChunk,
+                                kTextureRefsChunk,  kTexturePageChunk,      kLightsChunk,        kLightAliasesChunk,
+                                kEnvironmentChunk,  kEnvironmentTexelsChunk, kCausticTargetsChunk};
     return std::find(kKnown.begin(), kKnown.end(), id) != kKnown.end();
 }
 

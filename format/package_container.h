@@ -1,4 +1,4 @@
-// The outer shell of a package: header, chunk table, hashes, decompression. Knows nothing of what chunks contain.
+// The container of a package: header, chunk table, hashes, decompression; independent of the contents of chunks.
 #pragma once
 #include "format/package_layout.h"
 #include "format/result.h"
@@ -26,6 +26,6 @@ enum class Unpack
     kMeta, // chunks other than META stay compressed, for readers that do without them
 };
 
-/// Verifies the shell of `file` (16-byte aligned; chunks of the result refer into it) and every chunk's hash.
+/// Verifies the container `file` (16-byte aligned; chunks of the result refer into it) and every chunk's hash.
 Result<Container> readContainer(std::span<const std::byte> file, Unpack unpack = Unpack::kAll);
 } // namespace package

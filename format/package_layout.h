@@ -8,7 +8,7 @@
 namespace package
 {
 inline constexpr std::array<uint8_t, 12> kMagic{0xAB, 'L', 'U', 'M', 'I', ' ', '1', 0xBB, '\r', '\n', 0x1A, '\n'};
-inline constexpr uint16_t kVersionMajor = 2; // readers refuse another
+inline constexpr uint16_t kVersionMajor = 3; // readers refuse another
 inline constexpr uint16_t kVersionMinor = 0; // readers ignore a higher one
 inline constexpr uint32_t kBulkAlignment = 4096; // of uncompressed bulk chunks: mapped pages go to the GPU as they lie
 inline constexpr uint32_t kSmallAlignment = 16;  // of META and compressed chunks
@@ -38,10 +38,12 @@ constexpr uint32_t fourcc(const char (&s)[5])
     return uint32_t(uint8_t(s[0])) | uint32_t(uint8_t(s[1])) << 8 | uint32_t(uint8_t(s[2])) << 16 | uint32_t(uint8_t(s[3])) << 24;
 }
 inline constexpr uint32_t kMetaChunk = fourcc("META");             // FlatBuffer lumicut.fb.Meta
-inline constexpr uint32_t kBvhNodesChunk = fourcc("NODE");         // gpu::BvhNode[]
-inline constexpr uint32_t kBvhTrianglesChunk = fourcc("BTRI");     // gpu::BvhTriangle[]
-inline constexpr uint32_t kTrianglesChunk = fourcc("TRIS");        // gpu::Triangle[]
-inline constexpr uint32_t kVertexAttributesChunk = fourcc("VATT"); // gpu::VertexAttributes[]
+inline constexpr uint32_t kBvhNodesChunk = fourcc("NODE");         // StoredNode[]
+inline constexpr uint32_t kLeafTrianglesChunk = fourcc("LEAF");    // uint32_t[]: triangles of the leaves
+inline constexpr uint32_t kTrianglesChunk = fourcc("TRIS");        // StoredTriangle[]
+inline constexpr uint32_t kPositionsChunk = fourcc("VPOS");        // gpu::vec3[], by vertex
+inline constexpr uint32_t kVertexAttributesChunk = fourcc("VATT"); // StoredVertex[]
+inline constexpr uint32_t kVertexExtrasChunk = fourcc("VEXT");     // VertexExtras[], may be absent
 inline constexpr uint32_t kMaterialsChunk = fourcc("MATL");        // gpu::Material[]
 inline constexpr uint32_t kTextureRefsChunk = fourcc("TREF");      // gpu::TextureRef[], may be absent
 inline constexpr uint32_t kTexturePageChunk = fourcc("TEXP");      // one per Meta.texture_pages entry, by index

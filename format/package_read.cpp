@@ -3,9 +3,10 @@
 #include "format/check.h"
 #include "format/mapped_file.h"
 #include "format/package_container.h"
-#include "format/package_verify.h"
+#include "format/unfold_geometry.h"
 
 #include <new>
+#include <optional>
 
 namespace package
 {
@@ -15,13 +16,14 @@ struct Package::State
     uint64_t file_bytes = 0;
     Container container;
     Contents contents;
+    std::optional<UnfoldedGeometry> geometry;
 };
 
 namespace
 {
 constexpr size_t kParallelBytes = 1u << 20;
 
-/// Fills `state`, which already owns whatever keeps `bytes` alive.
+/// Fills `state`, which already owns the memory of `bytes`.
 template <typename State>
 Status read(std::span<const std::byte> bytes, State& state)
 {
@@ -36,7 +38,8 @@ Status read(std::span<const std::byte> bytes, State& state)
             return contents.error();
         state.contents = *contents;
         state.file_bytes = bytes.size();
-        return verifyContents(state.contents, bytes.size() >= kParallelBytes);
+        state.geometry.emplace(state.contents);
+        return verifyContents(state.contents, *state.geometry, bytes.size() >= kParallelBytes);
     }
     catch (const std::bad_alloc&)
     {

@@ -2,6 +2,7 @@
 
 #include "format/parallel.h"
 #include "format/texture_encoding.h"
+#include "format/unfold_geometry.h"
 
 #include <limits>
 
@@ -106,10 +107,13 @@ Status readArrays(const Container& container, Contents& contents)
 {
     const auto required = Presence::kRequired;
     const auto optional = Presence::kOptional;
-    for (Status status : {readArray(container, kBvhNodesChunk, required, contents.bvh_nodes),
-                          readArray(container, kBvhTrianglesChunk, required, contents.bvh_triangles),
-                          readArray(container, kTrianglesChunk, required, contents.triangles),
-                          readArray(container, kVertexAttributesChunk, required, contents.vertex_attributes),
+    StoredArrays& stored = contents.stored;
+    for (Status status : {readArray(container, kBvhNodesChunk, required, stored.nodes),
+                          readArray(container, kLeafTrianglesChunk, required, stored.leaf_triangles),
+                          readArray(container, kTrianglesChunk, required, stored.triangles),
+                          readArray(container, kPositionsChunk, required, stored.positions),
+                          readArray(container, kVertexAttributesChunk, required, stored.vertices),
+                          readArray(container, kVertexExtrasChunk, optional, stored.extras),
                           readArray(container, kMaterialsChunk, required, contents.materials),
                           readArray(container, kTextureRefsChunk, optional, contents.texture_refs),
                           readArray(container, kLightsChunk, optional, contents.lights),
@@ -121,6 +125,10 @@ Status readArrays(const Container& container, Contents& contents)
         if (!status)
             return status;
     }
+    if (stored.positions.size() != stored.vertices.size())
+        return invalid("chunk VPOS: {} vertices, chunk VATT has {}", stored.positions.size(), stored.vertices.size());
+    if (!stored.extras.empty() && stored.extras.size() != stored.vertices.size())
+        return invalid("chunk VEXT: {} vertices, chunk VATT has {}", stored.extras.size(), stored.vertices.size());
     return Success{};
 }
 } // namespace
@@ -137,13 +145,20 @@ Result<Contents> readContents(const Container& container)
     return contents;
 }
 
-Status verifyContents(const Contents& contents, bool parallel)
+Status verifyContents(const Contents& contents, UnfoldedGeometry& geometry, bool parallel)
 {
+    if (Status meta = verifyMeta(contents); !meta) // everything refers to its bounds
+        return meta;
     std::vector<std::function<Status()>> tasks;
-    for (Status (*verify)(const Contents&) :
-         {verifyMeta, verifyBvhNodes, verifyBvhTriangles, verifyTriangles, verifyVertexAttributes, verifyMaterials,
-          verifyTextureRefs, verifyLights, verifyEnvironment, verifyCausticTargets})
-        tasks.emplace_back([&contents, verify] { return verify(contents); });
+    const auto add = [&](Status (*verify)(const Contents&)) { tasks.emplace_back([&contents, verify] { return verify(contents); }); };
+    geometry.addFirst(contents, tasks);
+    for (const auto verify : {verifyMaterials, verifyTextureRefs, verifyEnvironment, verifyCausticTargets})
+        add(verify);
+    if (Status status = runAll(tasks, parallel); !status)
+        return status;
+    tasks.clear();
+    geometry.addSecond(contents, tasks);
+    add(verifyLights);
     return runAll(tasks, parallel);
 }
 } // namespace package

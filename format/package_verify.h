@@ -4,6 +4,7 @@
 #include "format/package_container.h"
 #include "format/package_generated.h"
 #include "format/result.h"
+#include "format/stored_geometry.h"
 
 #include <fmt/format.h>
 
@@ -15,10 +16,23 @@
 
 namespace package
 {
-/// The chunks of a package under their types. The spans refer into the file or the container's storage.
+/// Geometry as it lies in the file.
+struct StoredArrays
+{
+    std::span<const StoredNode> nodes;
+    std::span<const uint32_t> leaf_triangles;
+    std::span<const StoredTriangle> triangles;
+    std::span<const gpu::vec3> positions;
+    std::span<const StoredVertex> vertices; // as many as positions
+    std::span<const VertexExtras> extras;   // as many, or none
+};
+
+/// The chunks of a package under their types. The spans refer into the file or the container's storage, those of geometry
+/// but for `stored` to an UnfoldedGeometry.
 struct Contents
 {
     const lumicut::fb::Meta* meta = nullptr;
+    StoredArrays stored;
     std::span<const gpu::BvhNode> bvh_nodes;
     std::span<const gpu::BvhTriangle> bvh_triangles;
     std::span<const gpu::Triangle> triangles;
@@ -36,15 +50,12 @@ struct Contents
 /// Gives every chunk its type: the FlatBuffer is verified, sizes are whole multiples, what must be there is there.
 Result<Contents> readContents(const Container& container);
 
-/// Verifies everything in `contents` that anybody indexes or divides by.
-Status verifyContents(const Contents& contents, bool parallel);
+struct UnfoldedGeometry;
+/// Fills `geometry`, which was made for `contents`, and verifies everything in `contents` that anybody indexes or divides by.
+Status verifyContents(const Contents& contents, UnfoldedGeometry& geometry, bool parallel);
 
-// The parts of verifyContents(), one a file.
+// The parts of verifyContents(); those of geometry are in unfold_geometry.h.
 Status verifyMeta(const Contents& contents);
-Status verifyBvhNodes(const Contents& contents);
-Status verifyBvhTriangles(const Contents& contents);
-Status verifyTriangles(const Contents& contents);
-Status verifyVertexAttributes(const Contents& contents);
 Status verifyMaterials(const Contents& contents);
 Status verifyTextureRefs(const Contents& contents);
 Status verifyLights(const Contents& contents);

@@ -1,6 +1,6 @@
 // Where the levels of a tile lie in its page: a page of tiles holds textures of many sizes, each with all its levels side by
-// side. Around every level runs a border of texels as they follow where the texture repeats, so that bilinear filtering needs
-// no second look; levels start at multiples of 4 texels, as blocks do. Shared by C++ and GLSL.
+// side. Every level has a border of the texels that follow where the texture repeats, so that bilinear filtering needs only
+// a single lookup; levels start at multiples of 4 texels, as blocks do. Shared by C++ and GLSL.
 #ifndef FORMAT_TEXTURE_TILE_H
 #define FORMAT_TEXTURE_TILE_H
 #include "format/gpu_types.h"

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-struct Vec3d // its functions are friends, so that braced lists of floats never mean it
+struct Vec3d // its functions are friends, so that braced lists of floats never convert to it
 {
     double x = 0, y = 0, z = 0;
 

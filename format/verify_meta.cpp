@@ -1,4 +1,4 @@
-// Bounds, cameras, names, caustic targets: what META itself promises.
+// Bounds, cameras, names, caustic targets: the contents of META.
 #include "format/package_verify.h"
 
 #include <numbers>

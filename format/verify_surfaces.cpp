@@ -1,4 +1,4 @@
-// Triangles, vertices, materials and texture references.
+// Materials and texture references.
 #include "format/material.h"
 #include "format/package_verify.h"
 #include "format/texture_tile.h"
@@ -9,11 +9,6 @@ namespace package
 {
 namespace
 {
-bool isFiniteHalf(uint32_t bits)
-{
-    return (bits & 0x7c00u) != 0x7c00u;
-}
-
 /// A whole layer of a plain page, or a tile with all its levels inside a tiled one.
 bool liesInPage(const gpu::TextureRef& t, const lumicut::fb::TexturePage& page)
 {
@@ -57,42 +52,6 @@ Status verifyFactors(const gpu::Material& m, size_t index)
     return Success{};
 }
 } // namespace
-
-Status verifyTriangles(const Contents& contents)
-{
-    for (size_t i = 0; i < contents.triangles.size(); ++i)
-    {
-        const gpu::Triangle& t = contents.triangles[i];
-        for (const uint32_t vertex : {t.vertices.x, t.vertices.y, t.vertices.z})
-        {
-            if (vertex >= contents.vertex_attributes.size())
-                return invalid("chunk TRIS: triangle {} refers to vertex {}, chunk VATT has {}", i, vertex,
-                               contents.vertex_attributes.size());
-        }
-        if (t.light == gpu::kNone)
-            continue;
-        if (t.light >= contents.lights.size())
-            return invalid("chunk TRIS: triangle {} refers to light {}, chunk LITE has {}", i, t.light,
-                           contents.lights.size());
-        if (contents.lights[t.light].triangle != i)
-            return invalid("chunk TRIS: triangle {} claims light {}, which belongs to another", i, t.light);
-    }
-    return Success{};
-}
-
-Status verifyVertexAttributes(const Contents& contents)
-{
-    for (size_t i = 0; i < contents.vertex_attributes.size(); ++i)
-    {
-        const gpu::VertexAttributes& v = contents.vertex_attributes[i];
-        if (!isFinite({v.uv0.x, v.uv0.y, v.uv1.x, v.uv1.y}))
-            return invalid("chunk VATT: vertex {} has texture coordinates that are not finite", i);
-        if (!isFiniteHalf(v.color.x) || !isFiniteHalf(v.color.x >> 16) || !isFiniteHalf(v.color.y) ||
-            !isFiniteHalf(v.color.y >> 16))
-            return invalid("chunk VATT: vertex {} has a colour that is not finite", i);
-    }
-    return Success{};
-}
 
 Status verifyMaterials(const Contents& contents)
 {

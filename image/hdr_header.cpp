@@ -67,7 +67,7 @@ bool divide(std::array<double, 3>& factor, std::string_view text, size_t count)
     return true;
 }
 
-/// Some writers fill the line with zeros where they know nothing.
+/// Some writers fill the line with zeros if the values are unknown.
 bool isUnstated(const Primaries& p)
 {
     constexpr std::array<double, 2> kZero{};

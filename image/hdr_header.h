@@ -11,7 +11,7 @@
 
 struct HdrHeader
 {
-    // A picture is stored as `line_count` lines of `line_pixels` pixels; the orientation says how they lie.
+    // A picture is stored as `line_count` lines of `line_pixels` pixels; the orientation gives their directions.
     uint32_t line_count = 0;
     uint32_t line_pixels = 0;
     bool columns = false;                  // a line is a column, from the top or the bottom
@@ -23,5 +23,5 @@ struct HdrHeader
     size_t bytes = 0;               // of the header: where the lines begin
 };
 
-/// @return kInvalid where it is no header or says what cannot be, kUnsupported for a size or format we do not read
+/// @return kInvalid if it is no header or has impossible values, kUnsupported for a size or format we do not read
 Result<HdrHeader> parseHdrHeader(std::span<const std::byte> file);

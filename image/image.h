@@ -1,4 +1,4 @@
-// A picture in memory, as the tools and the player's capture hand it around.
+// A picture in memory, as the tools and the player's capture exchange it.
 #pragma once
 #include <cstddef>
 #include <cstdint>

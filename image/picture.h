@@ -1,4 +1,4 @@
-// What a reader of pictures hands over, line by line, so that a caller need not hold what it will not keep.
+// The output of picture readers, line by line, so that a caller need not store whole pictures.
 #pragma once
 #include "format/result.h"
 
@@ -37,7 +37,7 @@ void forEachPixel(const ScanLine& line, const Visit& visit)
         visit(x, y, line.rgb.data() + i);
 }
 
-/// Takes a picture. A pixel comes at most once; one that does not come is black.
+/// Receives a picture. Each pixel comes at most once; missing pixels are black.
 class PictureSink
 {
 public:

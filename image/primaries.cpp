@@ -98,7 +98,7 @@ std::optional<Matrix3> toRec709(const Primaries& primaries)
     const Vector3 cones_from = kBradford * whitePoint(primaries);
     const Vector3 cones_to = kBradford * whitePoint(target);
     for (const double response : cones_from)
-        if (!(response > 1e-3)) // no light looks like this
+        if (!(response > 1e-3)) // not a possible white
             return std::nullopt;
     const Vector3 gain{cones_to[0] / cones_from[0], cones_to[1] / cones_from[1], cones_to[2] / cones_from[2]};
     return to * (*inverse(kBradford) * (scaledColumns(kIdentity3, gain) * kBradford)) * *from;

@@ -25,7 +25,7 @@ inline constexpr Matrix3 kIdentity3{1, 0, 0, 0, 1, 0, 0, 0, 1};
 std::optional<Matrix3> toXyz(const Primaries& primaries);
 
 /// RGB of `primaries` to linear Rec. 709: their white becomes white by the Bradford transform (Lam 1985; ICC.1:2010
-/// annex E). XYZ states colours, not shares of a device's white, and is not adapted.
+/// annex E). XYZ is absolute, not relative to a device's white, and is not adapted.
 /// @return exactly kIdentity3 for Rec. 709 itself, within the four digits that files state; nothing as toXyz()
 std::optional<Matrix3> toRec709(const Primaries& primaries);
 

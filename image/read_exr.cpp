@@ -64,7 +64,7 @@ public:
     {
         const int64_t from = std::max(data_.min_y, shown_.min_y), to = std::min(data_.max_y, shown_.max_y);
         if (from >= to || std::max(data_.min_x, shown_.min_x) >= std::min(data_.max_x, shown_.max_x))
-            return; // nothing of it is seen
+            return; // outside the display window
         const bool whole = std::ranges::any_of(chosen_.names, [&](const auto& name) { return isSubsampled(name); });
         // Strips begin where blocks do, so that none is decoded twice.
         const int64_t rows = whole ? data_.height() : std::min(exrStripRows(part_.header()), data_.height());

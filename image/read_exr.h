@@ -1,4 +1,4 @@
-// OpenEXR in.
+// Reads OpenEXR pictures.
 #pragma once
 #include "image/image.h"
 #include "image/picture.h"

@@ -1,4 +1,4 @@
-// Radiance pictures (.hdr, .pic) in.
+// Reads Radiance pictures (.hdr, .pic).
 #pragma once
 #include "image/picture.h"
 

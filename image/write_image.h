@@ -1,4 +1,4 @@
-// OpenEXR and PNG out. Needs nothing of the project but result.h, and no library but OpenEXR and stb.
+// Writes OpenEXR and PNG pictures. Depends on result.h, OpenEXR and stb only.
 #pragma once
 #include "format/result.h"
 #include "image/image.h"
@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <span>
 
-/// Writes `bytes` to a temporary name beside `path`, then renames it: no half-written file is ever seen under `path`.
+/// Writes `bytes` to a temporary name beside `path`, then renames it: `path` never names a half-written file.
 /// Errors: kIo with the system's reason; the temporary file is gone then.
 Status writeFile(const std::filesystem::path& path, std::span<const uint8_t> bytes);
 

@@ -13,6 +13,7 @@ float pixelSide(const gpu::CameraParams& camera)
 
 gpu::vec3 operator+(gpu::vec3 a, gpu::vec3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
 gpu::vec3 operator*(float s, gpu::vec3 v) { return {s * v.x, s * v.y, s * v.z}; }
+float dot(gpu::vec3 a, gpu::vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 gpu::vec3 cross(gpu::vec3 a, gpu::vec3 b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
 gpu::vec3 normalize(gpu::vec3 v) { return (1 / std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z)) * v; }
 
@@ -78,5 +79,6 @@ gpu::CameraParams cameraParams(const Camera& camera, uint32_t width, uint32_t he
             .far_plane = camera.far_plane,
             .sample_count = 1,
             .first_sample = 0,
-            .seed = 0};
+            .seed = 0,
+            .jitter = {-1, -1}};
 }

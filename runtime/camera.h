@@ -38,5 +38,6 @@ float pixelSide(const gpu::CameraParams& camera);
 
 gpu::vec3 operator+(gpu::vec3 a, gpu::vec3 b);
 gpu::vec3 operator*(float s, gpu::vec3 v);
+float dot(gpu::vec3 a, gpu::vec3 b);
 gpu::vec3 cross(gpu::vec3 a, gpu::vec3 b);
 gpu::vec3 normalize(gpu::vec3 v);

@@ -8,8 +8,6 @@ namespace
 constexpr gpu::vec3 kWorldUp{0, 1, 0}; // glTF
 constexpr float kSteepest = 0.9995f;   // of the sine of the pitch: looking straight up would leave yaw without an axis
 
-float dot(gpu::vec3 a, gpu::vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-
 /// Rodrigues' formula. @param axis unit
 gpu::vec3 rotate(gpu::vec3 v, gpu::vec3 axis, float angle)
 {

@@ -48,7 +48,7 @@ struct GlobalIllumination::Context
     const FramePlan& plan;
     const Settings& settings;
     const SurfaceBuffers& surface;
-    uint32_t pixel_count;
+    uint32_t point_count;
     uint32_t seed;           // of this frame alone
     uint32_t placement_seed; // the same, of where irradiance samples are
 };
@@ -76,7 +76,8 @@ GlobalIllumination::GlobalIllumination(const Device& device, const SceneGpu& sce
     : scene_(scene), width_(width), height_(height),
       has_specular_(scene.hasFeature(gpu::kFeatureSpecular)), has_caustic_targets_(scene.info().caustic_target_count > 0),
       has_mirrors_(has_caustic_targets_ || scene.hasFeature(gpu::kFeatureTransmission | gpu::kFeatureThin)),
-      light_(device, width * height), primary_(device, scene, width * height), view_scale_(device, scene), direct_(device, scene, width * height),
+      point_count_(width * height * (scene.hasSmoothLayers() ? 2 : 1)), light_(device, point_count_),
+      primary_(device, scene, width * height, scene.hasSmoothLayers()), view_scale_(device, scene), direct_(device, scene, point_count_),
       photons_(device, scene, PhotonKind::kGlobal, settings.photon_count, photonCapacity(device, settings.photon_capacity)),
       caustic_photons_(device, scene, PhotonKind::kCaustic, settings.caustic_photons,
                        photonCapacity(device, uint64_t(settings.caustic_photons) * kCausticBounces)),
@@ -86,12 +87,17 @@ GlobalIllumination::GlobalIllumination(const Device& device, const SceneGpu& sce
       legs_(device), cut_(device, scene, photonCapacity(device, settings.photon_capacity)),
       samples_(device, width, height, settings.sample_count),
       gather_(device, scene, settings.sample_count, settings.gather_rays), interpolate_(device, settings.sample_count),
-      glossy_(device, scene, width * height), caustics_(device, scene), compose_(device, width * height), views_(device, scene, width * height)
+      glossy_(device, scene, point_count_), caustics_(device, scene), compose_(device, width * height), views_(device, scene, width * height)
 {
     if (GuideStage::helps(scene))
         guide_.emplace(device, scene, settings.photon_count);
-    if (settings.denoise_passes > 0 && (direct_.isNoisy() || has_specular_))
-        denoise_.emplace(device, scene, width * height);
+    const bool filters = settings.denoise_passes > 0 && (direct_.isNoisy() || has_specular_);
+    if (filters || goesOn(settings))
+        signals_.emplace(device, scene, width * height);
+    if (settings.history_frames > 0)
+        history_.emplace(device, width * height);
+    if (filters)
+        denoise_.emplace(device, width * height);
 }
 
 FrameTraits GlobalIllumination::traits() const
@@ -111,7 +117,7 @@ const Buffer& GlobalIllumination::record(Recorder& rec, const RayStage& rays, co
     const FramePlan plan = planFrame(settings, traits(), frame);
     gpu::CameraParams placement = frame.camera;
     placement.seed = placement_seed_.value_or(frame.camera.seed);
-    light_.clear(rec);
+    light_.clear(rec, plan.lightTerms());
     const SurfaceBuffers surface =
         primary_.record(rec, rays, {.camera = placement, .specular_depth = settings.specular_depth, .emission = light_.emission});
     view_scale_.record(rec, surface.points, width_ * height_, frame.camera);
@@ -121,7 +127,7 @@ const Buffer& GlobalIllumination::record(Recorder& rec, const RayStage& rays, co
                     .plan = plan,
                     .settings = settings,
                     .surface = surface,
-                    .pixel_count = width_ * height_,
+                    .point_count = point_count_,
                     .seed = traceSeed(frame.camera.seed, frame.accumulated, gpu::kTermIndirect),
                     .placement_seed = traceSeed(placement.seed, frame.accumulated, gpu::kTermIndirect)};
     if (plan.direct)
@@ -142,30 +148,47 @@ const Buffer& GlobalIllumination::record(Recorder& rec, const RayStage& rays, co
     }
     if (plan.caustics)
         recordCaustics(c);
-    if (plan.denoise_passes > 0)
-        recordDenoise(c);
-    const Buffer& picture = compose_.record(rec, light_, plan, width_ * height_);
+    if (plan.denoise_passes > 0 || plan.remembers || plan.antialiases)
+        recordSignals(c);
+    const Buffer& picture = compose_.record(rec, light_, plan, width_ * height_, point_count_);
     if (settings.view != gpu::kViewNone)
         recordView(c, picture);
     return picture;
 }
 
-void GlobalIllumination::recordDenoise(const Context& c) const
+/// What is noisy becomes the mean of the frames before, as far as they saw it, and of its surroundings.
+void GlobalIllumination::recordSignals(const Context& c)
 {
-    const auto filter = [&](const Buffer& light, bool glossy)
+    const SignalBuffers signals = signals_->record(c.rec, c.frame, c.surface, light_, c.plan.lightTerms());
+    if (c.plan.remembers)
+        history_->record(c.rec, {.signals = signals,
+                                 .surface = c.surface,
+                                 .light = light_,
+                                 .frame = c.frame,
+                                 .most_frames = c.settings.history_frames});
+    const auto filter = [&](const Buffer& signal, const Buffer& light)
     {
-        denoise_->record(c.rec, {.points = c.surface.points,
-                                 .light = light,
-                                 .width = width_,
-                                 .height = height_,
-                                 .passes = c.plan.denoise_passes,
-                                 .pixel_angle = c.frame.camera.orthographic ? 0 : pixelSide(c.frame.camera),
-                                 .glossy = glossy});
+        const Buffer& filtered =
+            c.plan.denoise_passes > 0
+                ? denoise_->record(c.rec, {.signal = signal,
+                                           .guides = signals.guides,
+                                           .width = width_,
+                                           .height = height_,
+                                           .passes = c.plan.denoise_passes,
+                                           .pixel_angle = c.frame.camera.orthographic ? 0 : pixelSide(c.frame.camera)})
+                : signal;
+        if (c.plan.remembers || c.plan.denoise_passes > 0)
+            signals_->apply(c.rec, signal, filtered, light, width_ * height_);
     };
-    if (c.plan.direct && direct_.isNoisy())
-        filter(light_.direct, false);
+    if (c.plan.noisy_direct)
+        filter(signals.direct, light_.direct);
     if (c.plan.glossy)
-        filter(light_.glossy, true);
+        filter(signals.glossy, light_.glossy);
+}
+
+std::optional<double> GlobalIllumination::rememberedShare(const Device& device) const
+{
+    return history_ ? std::optional(history_->rememberedShare(device, width_ * height_)) : std::nullopt;
 }
 
 void GlobalIllumination::recordDirect(const Context& c) const
@@ -174,7 +197,7 @@ void GlobalIllumination::recordDirect(const Context& c) const
                    {.points = c.surface.points,
                     .radiance = light_.sharp_direct,
                     .noisy = light_.direct,
-                    .point_count = c.pixel_count,
+                    .point_count = c.point_count,
                     .light_sample_count = c.settings.direct_samples,
                     .candidate_count = c.settings.direct_candidates,
                     .first_sample = c.frame.accumulated,
@@ -185,7 +208,7 @@ PhotonStage::Input GlobalIllumination::photonInput(const Context& c) const
 {
     return {.path_count = c.settings.photon_count,
             .first_path = c.frame.accumulated * c.settings.photon_count,
-            .seed = c.frame.camera.seed,
+            .seed = c.frame.map_seed,
             .guide = guide_ ? &*guide_ : nullptr};
 }
 
@@ -264,7 +287,7 @@ CutStage::Output GlobalIllumination::recordCut(const Context& c, const PhotonTre
                              .fewest = std::max(uint32_t(gpu::kCutFewest * shrink * shrink), 1u),
                              .probes = settings.cut_probes,
                              .rim_probes = kRimProbes,
-                             .seed = c.seed};
+                             .seed = traceSeed(c.frame.map_seed, c.frame.accumulated, gpu::kTermIndirect)};
     if (made_cut_ == in)
         return cut_.output();
     made_cut_ = in;
@@ -318,7 +341,7 @@ void GlobalIllumination::recordIndirect(const Context& c, const InterpolateStage
     interpolate_.record(c.rec, samples,
                         {.diffuse_points = c.surface.diffuse_points,
                          .radiance = light_.indirect,
-                         .point_count = c.pixel_count,
+                         .point_count = c.point_count,
                          .width = width_,
                          .alpha = c.settings.sample_alpha,
                          .white = c.settings.view == gpu::kViewIrradiance});
@@ -331,7 +354,7 @@ void GlobalIllumination::recordPixelGather(const Context& c, const PhotonTreeSta
     gather_.recordPixels(c.rec, c.rays, map, cut, gatherInput(c),
                          {.points = c.surface.points,
                           .radiance = light_.indirect,
-                          .point_count = c.pixel_count,
+                          .point_count = c.point_count,
                           .frame = c.frame.accumulated,
                           .seed = traceSeed(c.frame.camera.seed, 0, gpu::kTermIndirect)},
                          guide_ ? &*guide_ : nullptr);
@@ -342,7 +365,7 @@ void GlobalIllumination::recordGlossy(const Context& c, const CutStage::Output& 
 {
     const GlossyStage::Input in{.points = c.surface.points,
                                 .radiance = light_.glossy,
-                                .point_count = c.pixel_count,
+                                .point_count = c.point_count,
                                 .width = width_,
                                 .first_sample = c.frame.accumulated,
                                 .specular_depth = c.plan.chain_depth,
@@ -363,13 +386,13 @@ void GlobalIllumination::recordCaustics(const Context& c)
     const uint32_t path_count = has_caustic_targets_ ? settings.caustic_photons : settings.caustic_photons / 8;
     const PhotonStage::Input in{.path_count = path_count,
                                 .first_path = c.frame.accumulated * path_count,
-                                .seed = c.frame.camera.seed + gpu::kTermCaustics};
+                                .seed = c.frame.map_seed + gpu::kTermCaustics};
     if (!isThere(c, caustic_map_, in))
         caustic_tree_.record(c.rec, caustic_photons_.record(c.rec, c.rays, in));
     caustics_.record(c.rec, caustic_tree_.output(),
                      {.points = c.surface.points,
                       .radiance = light_.caustics,
-                      .point_count = c.pixel_count,
+                      .point_count = c.point_count,
                       .photon_count = settings.caustic_density_photons,
                       .radius = shrunkRadius(settings.caustic_radius, c.frame.accumulated)});
 }

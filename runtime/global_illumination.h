@@ -10,6 +10,7 @@
 #include "runtime/stages/gather.h"
 #include "runtime/stages/glossy.h"
 #include "runtime/stages/guide.h"
+#include "runtime/stages/history.h"
 #include "runtime/stages/interpolate.h"
 #include "runtime/stages/primary.h"
 #include "runtime/stages/view_scale.h"
@@ -38,6 +39,10 @@ public:
     {
         return global_map_ ? device.download<gpu::PhotonStore>(photons_.store(), 1)[0] : gpu::PhotonStore{};
     }
+    /// gpu::Motion[width * height] of the last frame whose plan antialiases.
+    const Buffer& motions() const { return signals_->motions(); }
+    /// Share of the pixels that went on from a history in the last frame, none where it kept none; waits for the device.
+    std::optional<double> rememberedShare(const Device& device) const;
     /// Of the last frame; waits for the device.
     std::vector<gpu::Sample> irradianceSamples(const Device& device) const { return samples_.download(device); }
     uint32_t cutNodeCount(const Device& device) const { return cut_.nodeCount(device); }
@@ -62,7 +67,7 @@ private:
     void recordIndirect(const Context& c, const InterpolateStage::Sorted& samples) const;
     void recordGlossy(const Context& c, const CutStage::Output& cut, const InterpolateStage::Sorted* samples) const;
     void recordCaustics(const Context& c);
-    void recordDenoise(const Context& c) const;
+    void recordSignals(const Context& c);
     void recordView(const Context& c, const Buffer& picture) const;
 
     struct MapOrigin // what a photon map was made from
@@ -76,6 +81,7 @@ private:
     const SceneGpu& scene_;
     uint32_t width_, height_;
     bool has_specular_, has_caustic_targets_, has_mirrors_;
+    uint32_t point_count_; // shading points: one a pixel, or two
     LightBuffers light_;
     PrimaryStage primary_;
     ViewScaleStage view_scale_;
@@ -90,7 +96,9 @@ private:
     InterpolateStage interpolate_;
     GlossyStage glossy_;
     CausticsStage caustics_;
-    std::optional<DenoiseStage> denoise_; // where it is asked for
+    std::optional<SignalsStage> signals_; // where filters or histories are asked for
+    std::optional<HistoryStage> history_;
+    std::optional<DenoiseStage> denoise_;
     ComposeStage compose_;
     ViewsStage views_;
     gpu::vec3 map_camera_{};                            // where the camera was when the global map was made

@@ -3,6 +3,8 @@
 #include "runtime/capture.h"
 #include "image/read_exr.h"
 
+#include <future>
+
 namespace
 {
 Result<Rendering> readAgainst(const PlayerOptions& options)
@@ -23,28 +25,25 @@ Result<Rendering> readAgainst(const PlayerOptions& options)
         rendering.pixels.push_back({image->rgb[i], image->rgb[i + 1], image->rgb[i + 2]});
     return rendering;
 }
-} // namespace
 
-Result<OpenedScene> openScene(const PlayerOptions& options, std::span<const char* const> window_extensions,
-                              Statistics& statistics)
+Result<std::optional<CameraPath>> readPath(const PlayerOptions& options, const std::vector<Camera>& cameras)
 {
-    auto package = package::Package::open(options.package);
-    if (!package)
-        return package.error();
-    statistics.open_ms = statistics.elapsedMs();
-    auto against = readAgainst(options);
-    if (!against)
-        return against.error();
-    std::vector<Camera> cameras = packageCameras(*package);
-    std::optional<CameraPath> path;
-    if (!options.path.empty())
-    {
-        const auto loaded = CameraPath::load(options.path, cameras);
-        if (!loaded)
-            return loaded.error();
-        path = *loaded;
-    }
+    if (options.path.empty())
+        return std::optional<CameraPath>();
+    auto path = CameraPath::load(options.path, cameras);
+    if (!path)
+        return path.error();
+    return std::optional(std::move(*path));
+}
 
+struct OpenedDevice
+{
+    Instance instance;
+    std::unique_ptr<Device> device;
+};
+
+Result<OpenedDevice> openDevice(const PlayerOptions& options, std::span<const char* const> window_extensions)
+{
     auto instance = Instance::create({.validation = options.validation, .extensions = window_extensions});
     if (!instance)
         return instance.error();
@@ -54,27 +53,56 @@ Result<OpenedScene> openScene(const PlayerOptions& options, std::span<const char
     auto device = Device::create(*instance, *index, !window_extensions.empty());
     if (!device)
         return device.error();
-    if (const uint64_t bytes = against->pixels.size() * sizeof(gpu::vec3); bytes > (*device)->limits().maxStorageBufferRange)
+    return OpenedDevice{std::move(*instance), std::move(*device)};
+}
+} // namespace
+
+Result<OpenedScene> openScene(const PlayerOptions& options, std::span<const char* const> window_extensions,
+                              Statistics& statistics)
+{
+    // The driver takes as long to start as the package to read.
+    auto reading = std::async([&]
+    {
+        auto package = statistics.timed(statistics.package_ms, [&] { return package::Package::open(options.package); });
+        statistics.open_ms = statistics.elapsedMs();
+        return package;
+    });
+    auto opened = statistics.timed(statistics.device_ms, [&] { return openDevice(options, window_extensions); });
+    auto package = reading.get();
+    if (!package)
+        return package.error();
+    auto against = readAgainst(options);
+    if (!against)
+        return against.error();
+    std::vector<Camera> cameras = packageCameras(*package);
+    auto path = readPath(options, cameras);
+    if (!path)
+        return path.error();
+    if (!opened)
+        return opened.error();
+    auto& device = opened->device;
+    if (const uint64_t bytes = against->pixels.size() * sizeof(gpu::vec3); bytes > device->limits().maxStorageBufferRange)
         return Error{ExitCode::kDevice,
                      fmt::format("of {}x{} pixels is too large to compare with on {}", against->width, against->height,
-                                 (*device)->name()),
+                                 device->name()),
                      options.against.string()};
     const auto camera = chooseCamera(*package, options.camera);
     if (!camera)
         return camera.error();
-    auto scene = SceneGpu::create(**device, *package);
+    auto scene = statistics.timed(statistics.upload_ms, [&] { return SceneGpu::create(*device, *package); });
     if (!scene)
         return scene.error();
-    const std::string preset = !options.preset.empty() ? options.preset : (*device)->isCpu() ? "preview" : "default";
+    const std::string preset = !options.preset.empty() ? options.preset : device->isCpu() ? "preview" : "default";
     const auto settings = makeSettings(preset, options.assignments);
     if (!settings)
         return settings.error();
-    return OpenedScene{.instance = *instance,
-                       .device = std::move(*device),
+    statistics.ready_ms = statistics.elapsedMs();
+    return OpenedScene{.instance = opened->instance,
+                       .device = std::move(device),
                        .scene = std::move(*scene),
                        .cameras = std::move(cameras),
                        .camera = *camera,
-                       .path = std::move(path),
+                       .path = std::move(*path),
                        .settings = *settings,
                        .against = std::move(*against)};
 }

@@ -1,6 +1,7 @@
 #include "runtime/renderer.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 
 namespace
@@ -13,6 +14,13 @@ uint32_t batchFor(const Device& device, uint32_t pixel_count)
 {
     constexpr uint32_t kPathsToFill = 1u << 20;
     return device.isCpu() ? 1 : std::clamp(kPathsToFill / pixel_count, 1u, 64u);
+}
+
+/// Places within the pixel that fill it evenly however many successive ones are taken (Roberts 2018, the R2 sequence).
+gpu::vec2 jitterOf(uint32_t frame)
+{
+    const auto part = [&](double step) { return float(std::fmod(0.5 + step * frame, 1.0)); };
+    return {part(0.7548776662466927), part(0.5698402909980532)};
 }
 
 bool sameView(const gpu::CameraParams& a, const gpu::CameraParams& b)
@@ -39,7 +47,11 @@ Renderer::Renderer(const Device& device, const SceneGpu& scene, Mode mode, uint3
     if (mode == Mode::kReference)
         reference_.emplace(device, scene, width * height, max_batch_);
     else if (mode == Mode::kGi)
+    {
         gi_.emplace(device, scene, settings, width, height);
+        if (settings.antialias_frames > 0)
+            antialias_.emplace(device, width * height);
+    }
     else
     {
         primary_.emplace(device, scene, width * height);
@@ -51,16 +63,24 @@ Renderer::Renderer(const Device& device, const SceneGpu& scene, Mode mode, uint3
 /// What this frame continues: a standing picture where neither camera nor lights have changed, else the last frame only.
 FrameInfo Renderer::beginFrame(Recorder& rec, const Camera& camera, const Settings& settings, uint32_t seed)
 {
-    FrameInfo frame{.camera = cameraParams(camera, width_, height_), .number = frame_count_++};
+    FrameInfo frame{.camera = cameraParams(camera, width_, height_), .map_seed = seed, .number = frame_count_++};
     frame.camera.seed = seed;
+    const bool goes_on = gi_ && goesOn(settings);
     const bool lights_stand = last_lights_ == scene_.lightsVersion();
     if (!last_camera_ || !lights_stand || !sameView(*last_camera_, frame.camera))
     {
         resolve_.restart(rec);
-        if (lights_stand)
+        if (lights_stand && went_on_ && goes_on)
             frame.previous = last_camera_;
+        picture_seed_ = frame.previous ? traceSeed(seed, frame.number, 0) : seed; // means need other numbers in every frame
+        went_on_ = goes_on;
     }
     last_camera_ = frame.camera;
+    frame.camera.seed = picture_seed_;
+    if (!settings.reuse_photons)
+        frame.map_seed = picture_seed_;
+    if (frame.previous && antialias_)
+        frame.camera.jitter = jitterOf(frame.number);
     last_lights_ = scene_.lightsVersion();
     const bool repeat = gi_ && showsOneFrame(settings.view); // a debug view stands still
     frame.accumulated = repeat ? 0 : resolve_.sampleCount();
@@ -104,7 +124,13 @@ void Renderer::recordGi(Recorder& rec, const FrameInfo& frame, const Settings& s
     Settings drawn = settings;
     if (settings.view == gpu::kViewError)
         drawn.view = gpu::kViewNone;
-    resolve_.accumulate(rec, gi_->record(rec, rays_, frame, drawn), width_ * height_, 1);
+    const Buffer& picture = gi_->record(rec, rays_, frame, drawn);
+    resolve_.accumulate(rec, picture, width_ * height_, 1);
+    is_antialiased_ = antialias_ && drawn.view == gpu::kViewNone && drawn.antialias_frames > 0;
+    if (is_antialiased_ && frame.stands())
+        antialias_->recordStanding(rec, resolve_.sum(), resolve_.sampleCount(), width_ * height_);
+    else if (is_antialiased_)
+        antialias_->recordMoving(rec, picture, gi_->motions(), width_, height_, drawn.antialias_frames, frame.previous.has_value());
     if (shows_error_)
         error_->record(rec, resolve_.sum(), resolve_.sampleCount(), width_, height_);
 }
@@ -118,6 +144,8 @@ const Buffer& Renderer::display(Recorder& rec, const Settings& settings, bool bg
 {
     if (shows_error_)
         return resolve_.displayColors(rec, error_->colors(), width_ * height_, bgra);
+    if (is_antialiased_)
+        return resolve_.display(rec, antialias_->shown(), 1, width_ * height_, settings.exposure, Tonemap(settings.tonemap), bgra);
     if (gi_ && settings.view != gpu::kViewError && isDisplayReferred(settings.view))
         return resolve_.display(rec, width_ * height_, 0, Tonemap::kSrgb, bgra);
     return resolve_.display(rec, width_ * height_, settings.exposure, Tonemap(settings.tonemap), bgra);
@@ -127,6 +155,8 @@ std::vector<gpu::vec3> Renderer::picture(const Device& device) const
 {
     if (shows_error_)
         return device.download<gpu::vec3>(error_->colors(), uint64_t(width_) * height_);
+    if (is_antialiased_)
+        return device.download<gpu::vec3>(antialias_->shown(), uint64_t(width_) * height_);
     std::vector<gpu::vec3> pixels = device.download<gpu::vec3>(resolve_.sum(), uint64_t(width_) * height_);
     const float scale = 1.0f / float(std::max(resolve_.sampleCount(), 1u));
     for (gpu::vec3& pixel : pixels)

@@ -3,6 +3,7 @@
 #include "runtime/camera.h"
 #include "runtime/global_illumination.h"
 #include "runtime/settings.h"
+#include "runtime/stages/antialias.h"
 #include "runtime/stages/direct.h"
 #include "runtime/stages/error_view.h"
 #include "runtime/stages/primary.h"
@@ -59,6 +60,8 @@ public:
     std::vector<gpu::Sample> irradianceSamples(const Device& device) const { return gi_->irradianceSamples(device); }
     /// Nodes of the last frame's illumination cut in Mode::kGi, but for cut.mode knn; waits for the device.
     uint32_t cutNodeCount(const Device& device) const { return gi_->cutNodeCount(device); }
+    /// Share of the pixels that went on from a history in the last frame in Mode::kGi; none where histories are off.
+    std::optional<double> rememberedShare(const Device& device) const { return gi_ ? gi_->rememberedShare(device) : std::nullopt; }
     /// In Mode::kGi: from now on shading points and irradiance samples are those of that seed, whatever the frame's.
     void placeSamplesBy(uint32_t seed) { gi_->placeSamplesBy(seed); }
     /// Counts the rays of frames recorded from now on; null ends that.
@@ -77,10 +80,14 @@ private:
     Buffer direct_light_; // vec3[pixels], of Mode::kDirect
     std::optional<ReferenceStage> reference_;
     std::optional<GlobalIllumination> gi_;
+    std::optional<AntialiasStage> antialias_; // in Mode::kGi, where it is asked for
+    bool is_antialiased_ = false;             // the last frame
     ResolveStage resolve_;
     std::optional<ErrorView> error_;
     bool shows_error_ = false; // in the last frame
     std::optional<gpu::CameraParams> last_camera_; // none: the next picture starts anew
     uint64_t last_lights_ = 0;
     uint32_t frame_count_ = 0;
+    uint32_t picture_seed_ = 0; // of all frames of a standing picture
+    bool went_on_ = false;      // the last frame left histories
 };

@@ -54,7 +54,8 @@ uint32_t materialFeatures(const gpu::Material& material)
                         (material.dispersion > 0 && material.transmission > 0 ? gpu::kFeatureDispersion : 0u) |
                         (material.diffuse_transmission > 0 ? gpu::kFeatureDiffuseTransmission : 0u);
     for (const package::MaterialTexture& texture : package::kMaterialTextures)
-        features |= material.*texture.index != gpu::kNone ? texture.feature : 0u;
+        if (material.*texture.index != gpu::kNone) // every map of normals wants tangents, the coat's too
+            features |= texture.feature | (texture.encoding == gpu::kEncodingNormal ? gpu::kFeatureNormalMaps : 0u);
     return features;
 }
 
@@ -87,6 +88,12 @@ gpu::ViewScale wholeScene(const gpu::SceneInfo& info)
 bool isRough(const gpu::Material& material)
 {
     return material.roughness > gpu::kHarmonicsFrom && (material.specular > 0 || material.metallic > 0);
+}
+
+bool hasSmoothLayer(const gpu::Material& material)
+{
+    const bool smooth = material.roughness < gpu::kSmoothRoughness && material.metallic < 1 && material.specular > 0;
+    return smooth || (material.clearcoat > 0 && material.clearcoat_roughness < gpu::kSmoothRoughness);
 }
 } // namespace
 
@@ -133,6 +140,7 @@ Result<std::unique_ptr<SceneGpu>> SceneGpu::create(const Device& device, const p
     scene->features_ = sceneFeatures(package);
     scene->constants_ = {{{"kSceneFeatures", scene->features_}, {"kUsedTexturePages", package.meta().texture_pages()->size()}}};
     scene->reflects_roughly_ = std::ranges::any_of(package.materials(), isRough);
+    scene->has_smooth_layers_ = std::ranges::any_of(package.materials(), hasSmoothLayer);
     scene->createImages(package);
     scene->createDescriptorSet();
     return scene;
@@ -153,19 +161,21 @@ void SceneGpu::setLight(Recorder& rec, uint32_t index, const gpu::Light& light)
     rec.write(buffers_[gpu::kLightsBinding - gpu::kBvhNodesBinding], index * sizeof(light), std::as_bytes(std::span(&light, 1)));
 }
 
+void SceneGpu::setEmission(Recorder& rec, uint32_t index, gpu::vec3 emission)
+{
+    const Buffer& materials = buffers_[gpu::kMaterialsBinding - gpu::kBvhNodesBinding];
+    check((index + 1) * sizeof(gpu::Material) <= materials.size(), "material {} of {} bytes of them", index, materials.size());
+    ++lights_version_;
+    rec.write(materials, index * sizeof(gpu::Material) + offsetof(gpu::Material, emission), std::as_bytes(std::span(&emission, 1)));
+}
+
 void SceneGpu::createImages(const package::Package& package)
 {
     constexpr std::array<uint32_t, 4> kWhite{~0u, ~0u, ~0u, ~0u};
-    const uint32_t page_count = package.meta().texture_pages()->size();
-    for (uint32_t p = 0; p < gpu::kTexturePageCount; ++p)
-    {
-        if (p >= page_count)
-        {
-            pages_.push_back(device_.uploadImage("scene.no_page", {.array = true}, std::as_bytes(std::span(kWhite).first(1))));
-            continue;
-        }
+    for (uint32_t p = 0; p < package.meta().texture_pages()->size(); ++p)
         pages_.push_back(uploadTexturePage(device_, package, p));
-    }
+    if (pages_.size() < gpu::kTexturePageCount) // one for all that are not there
+        pages_.push_back(device_.uploadImage("scene.no_page", {.array = true}, std::as_bytes(std::span(kWhite).first(1))));
     if (const auto* environment = package.meta().environment())
         environment_ = device_.uploadImage("scene.environment",
                                            {.format = VK_FORMAT_R32G32B32A32_SFLOAT, .width = environment->width(), .height = environment->height()},
@@ -218,8 +228,8 @@ void SceneGpu::createDescriptorSet()
     for (const Buffer* buffer : bound_)
         buffers.push_back({buffer->handle(), 0, VK_WHOLE_SIZE});
     std::vector<VkDescriptorImageInfo> images;
-    for (const Image& page : pages_)
-        images.push_back({texture_sampler_, page.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL});
+    for (size_t p = 0; p < gpu::kTexturePageCount; ++p)
+        images.push_back({texture_sampler_, pages_[std::min(p, pages_.size() - 1)].view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL});
     images.push_back({environment_sampler_, environment_.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL});
 
     std::vector<VkWriteDescriptorSet> writes;

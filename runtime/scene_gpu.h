@@ -35,11 +35,16 @@ public:
     bool hasFeature(uint32_t features) const { return (features_ & features) != 0; }
     /// Some opaque material reflects so roughly that spherical harmonics can stand for rays (shaders/gather/harmonics.h).
     bool reflectsRoughly() const { return reflects_roughly_; }
+    /// Some material is a mirror over something else: glass, or a smooth layer. What textures say of it is left out.
+    bool hasSmoothLayers() const { return has_smooth_layers_; }
     /// Replaces light `index` from the next kernel of `rec` on; with the kind and pmf it has, on which other tables rest.
     void setLight(Recorder& rec, uint32_t index, const gpu::Light& light);
+    /// Replaces what material `index` emits, W/(m^2 sr) before its texture, from the next kernel of `rec` on. Of a surface
+    /// whose triangles are lights those are to be replaced too.
+    void setEmission(Recorder& rec, uint32_t index, gpu::vec3 emission);
     /// gpu::ViewScale, as every kernel sees it: of the whole scene until a ViewScaleStage sets it.
     const Buffer& viewScale() const { return buffers_.back(); }
-    /// Grows whenever a light is replaced: what was made under another version is out of date.
+    /// Grows whenever a light or an emission is replaced: what was made under another version is out of date.
     uint64_t lightsVersion() const { return lights_version_; }
     /// By light index.
     std::span<const LightShare> lightShares() const { return light_shares_; }
@@ -58,10 +63,11 @@ private:
     uint32_t features_ = 0; // kFeature*
     std::array<Constant, 2> constants_{};
     bool reflects_roughly_ = false;
+    bool has_smooth_layers_ = false;
     Buffer info_buffer_;
     std::vector<Buffer> buffers_; // by binding, kBvhNodesBinding first
     std::vector<const Buffer*> bound_; // by binding
-    std::vector<Image> pages_;    // kTexturePageCount of them, unused ones 1 x 1 white
+    std::vector<Image> pages_;    // the package's, then a white one of 1 x 1 for those that are missing to kTexturePageCount
     Image environment_;
     VkSampler texture_sampler_ = VK_NULL_HANDLE, environment_sampler_ = VK_NULL_HANDLE;
     VkDescriptorPool pool_ = VK_NULL_HANDLE;

@@ -40,6 +40,8 @@ constexpr std::array kKnobs{
     Knob{"caustics.nearest", &Settings::caustic_density_photons, 8, 1024, "", "photons of a caustic's density estimate"},
     Knob{"caustics.radius", &Settings::caustic_radius, 1e-4, 1, "of the distance from the viewer", "how far that estimate may reach"},
     Knob{"denoise.passes", &Settings::denoise_passes, 0, 5, "", "passes of the filter over the first frames' noise, each three times as wide as the last"},
+    Knob{"history.frames", &Settings::history_frames, 0, 62, "", "frames that a moving picture's light is the mean of at most; 0: each stands alone"},
+    Knob{"antialias.frames", &Settings::antialias_frames, 0, 62, "", "frames that a moving picture's edges are the mean of at most; 0: none but its own"},
     choice("reuse.photons", &Settings::reuse_photons, kOffOn, "whether photons and cut are kept while only the camera moves"),
     Knob{"reference_depth", &Settings::reference_depth, 1, 1024, "", "most vertices of a path of the reference"},
     choice("term", &Settings::term, kTerms, "light paths shown in modes gi and reference; the others sum to all"),

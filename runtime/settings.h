@@ -33,7 +33,9 @@ struct Settings
     uint32_t caustic_density_photons = 200;
     float caustic_radius = 0.03f; // of the distance from the viewer
     uint32_t denoise_passes = 3;
-    uint32_t reuse_photons = 1; // 0 or 1
+    uint32_t history_frames = 32;
+    uint32_t antialias_frames = 6;
+    uint32_t reuse_photons = 0; // 0 or 1
     uint32_t reference_depth = 64;
     uint32_t term = gpu::kTermAll;
     uint32_t view = gpu::kViewNone;

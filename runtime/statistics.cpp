@@ -49,8 +49,10 @@ double Statistics::elapsedMs() const
 
 std::string Statistics::summary() const
 {
-    std::string text = fmt::format("{}: {} samples a pixel, first frame submitted after {:.0f} ms ({:.0f} ms of it pipelines)", device,
-                                   sample_count, first_submit_ms, pipeline_ms);
+    std::string text = fmt::format("{}: {} samples a pixel, first frame submitted after {:.0f} ms (device {:.0f}, beside it package {:.0f}, "
+                                   "upload {:.0f}, stages {:.0f}, of these pipelines {:.0f})",
+                                   device, sample_count, first_submit_ms, device_ms, package_ms, upload_ms, first_submit_ms - ready_ms,
+                                   pipeline_ms);
     for (const StageSummary& stage : summarise(frames))
         text += fmt::format("\n  {:<12} p50 {:9.3f} ms  p95 {:9.3f} ms", stage.name, stage.p50, stage.p95);
     if (photon_paths < photon_paths_asked)
@@ -64,10 +66,11 @@ std::string Statistics::summary() const
 Status Statistics::writeJson(const std::filesystem::path& path) const
 {
     std::string text = fmt::format("{{\n  \"schema\": \"lumicut-play-stats/1\",\n  \"device\": {},\n  \"open_ms\": {:.3f},\n"
+                                   "  \"package_ms\": {:.3f},\n  \"device_ms\": {:.3f},\n  \"upload_ms\": {:.3f},\n  \"ready_ms\": {:.3f},\n"
                                    "  \"first_submit_ms\": {:.3f},\n  \"pipeline_ms\": {:.3f},\n  \"device_bytes\": {},\n"
                                    "  \"samples_per_pixel\": {},\n  \"non_finite_samples\": {},\n  \"photons\": {},\n"
                                    "  \"photon_paths\": {},\n  \"photon_paths_asked\": {},\n  \"submissions\": {},\n  \"stages\": [",
-                                   jsonString(device), open_ms, first_submit_ms, pipeline_ms, device_bytes, sample_count,
+                                   jsonString(device), open_ms, package_ms, device_ms, upload_ms, ready_ms, first_submit_ms, pipeline_ms, device_bytes, sample_count,
                                    non_finite_samples, photons, photon_paths, photon_paths_asked, frames.size());
     const auto stages = summarise(frames);
     for (size_t i = 0; i < stages.size(); ++i)

@@ -10,6 +10,10 @@ struct Statistics
 {
     std::string device;
     double open_ms = 0;         // package verified, since the start
+    double package_ms = 0;      // reading and verifying it, side by side with device_ms
+    double device_ms = 0;       // finding and opening the device
+    double upload_ms = 0;       // bringing the scene to it
+    double ready_ms = 0;        // all that done, since the start; what follows is the stages' memory, tables and pipelines
     double first_submit_ms = 0; // first frame handed to the device, since the start
     double pipeline_ms = 0;     // of that, building pipelines
     uint64_t device_bytes = 0;
@@ -21,6 +25,15 @@ struct Statistics
     std::vector<std::vector<StageTime>> frames; // of the first kMeasuredFrames submissions
 
     double elapsedMs() const;
+    /// The result of `work()`, and in `ms` how long it took.
+    template <typename Work>
+    auto timed(double& ms, const Work& work) const
+    {
+        const double start = elapsedMs();
+        auto result = work();
+        ms = elapsedMs() - start;
+        return result;
+    }
     void addFrame(std::vector<StageTime> times)
     {
         if (frames.size() < kMeasuredFrames)

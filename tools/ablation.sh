@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# What each part of mode gi is worth: error of the first frame and GPU milliseconds side by side, one setting changed at a
+# The effect of each part of mode gi: error of the first frame and GPU milliseconds side by side, one setting changed at a
 # time; then the illumination cut's lookups against full kNN and path tracing: with these settings, and like against like,
-# with the photons of the method (100 an estimate) and without the light that the cut finds missing at edges and kNN does not
+# with the photons of the method (100 an estimate) and without the cut's coverage correction at edges, which kNN does not have
 # (cut.probes=0).
 #   tools/ablation.sh [OPTION...] [OUTDIR]    OUTDIR: packages and references; default build/truth
 #     --quick            small pictures, references of 256 samples, small counts
@@ -9,37 +9,17 @@
 #     --size WxH         default 320x180
 #     --spp N            samples a pixel of the reference; default 4096
 #     --seeds N          first frames to average over; default 4
-#     --travel N         frames of a moving camera before the rows that show what reuse is worth; default 60
+#     --travel N         frames of a moving camera before the rows about reuse; default 60
 #     --set NAME=VALUE   a setting of all rows; repeatable
 #     --row "NAME=VALUE..."   one more row; repeatable
 # The reference's own noise is part of every error. LUMICUT_BIN=FOLDER uses the programs there instead of building.
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/bench/scenes.sh"
 
-quick=0 scene=atrium size= spp= seeds=4 travel= out=$root/build/truth
+quick=0 scene=atrium size= spp= seeds=4 travel=
 common=() extra=()
-while (($#)); do
-    case $1 in
-    --help | -h) usage_of "${BASH_SOURCE[0]}" && exit ;;
-    --quick) quick=1 ;;
-    --scene | --size | --spp | --seeds | --travel | --set | --row)
-        need_value "$1" $#
-        case $1 in
-        --scene) scene=$2 ;;
-        --size) size=$2 ;;
-        --spp) spp=$2 ;;
-        --seeds) seeds=$2 ;;
-        --travel) travel=$2 ;;
-        --set) common+=(--set "$2") ;;
-        --row) extra+=("$2") ;;
-        esac
-        shift
-        ;;
-    -*) fail 1 "unknown option $1 (see --help)" ;;
-    *) out=$1 ;;
-    esac
-    shift
-done
+read_options quick scene= size= spp= seeds= travel= set++=common row+=extra -- "$@"
+out=${operands[0]:-$root/build/truth}
 : "${travel:=$((quick ? 20 : 60))}" "${spp:=$((quick ? 256 : 4096))}" "${size:=$((quick ? 128 : 320))x$((quick ? 72 : 180))}"
 mkdir -p "$out"
 build_programs
@@ -88,7 +68,7 @@ done
 
 echo
 echo "temporal reuse: the same, the frame as the camera comes to rest there after $travel frames of swaying"
-for row in "" reuse.photons=off; do
+for row in "" reuse.photons=on history.frames=0 antialias.frames=0 "history.frames=0 antialias.frames=0"; do
     print_row "$row" --travel "$travel"
 done
 

@@ -11,7 +11,7 @@ fi
 preset=$1
 shift
 
-# Ninja configures again by itself when a CMakeLists.txt changes, but does not know of the presets.
+# Ninja configures again by itself when a CMakeLists.txt changes, but not when the presets change.
 if [[ ! -e build/$preset/build.ninja || CMakePresets.json -nt build/$preset/build.ninja ]]; then
     echo "build: configuring $preset"
     mkdir -p "build/$preset"

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Fuzzes every reader under the address and undefined-behaviour sanitizers, as many side by side as there are cores.
 #   tools/fuzz.sh [SECONDS] [TARGET...]     600 seconds each and all targets by default: exr gltf hdr ktx2 package path settings
-# What is found stays in build/asan/tests/fuzz: corpus/TARGET, and crash-*, timeout-* where it failed.
+# Findings stay in build/asan/tests/fuzz: corpus/TARGET, and crash-*, timeout-* where it failed.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 

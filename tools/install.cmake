@@ -27,4 +27,4 @@ endforeach()
 add_custom_target(documentation ALL DEPENDS ${documentation})
 
 install(FILES LICENSE README.md CHANGELOG.md format/FORMAT.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
-install(DIRECTORY docs/schemas DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} FILES_MATCHING PATTERN "*.md" PATTERN "*.json")

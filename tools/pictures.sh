@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Pictures of what happens within one frame of the atrium in mode gi, as README.md shows them, and of what the path-traced
+# Pictures of what happens within one frame of the atrium in mode gi, as docs/gi-overview.md shows them, and of what the path-traced
 # reference makes of the same view.
 #   tools/pictures.sh [OPTION...] [OUTDIR]    OUTDIR: where the PNG files go; default tools/pictures
 #     --scene SCENE        cornell, caustics or atrium; default atrium
@@ -14,30 +14,10 @@
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/bench/scenes.sh"
 
-scene=atrium size=480x270 frames=32 spp=512 preset=default only= pictures=$root/tools/pictures out=$root/build/pictures
+scene=atrium size=480x270 frames=32 spp=512 preset=default only= out=$root/build/pictures
 device=() settings=()
-while (($#)); do
-    case $1 in
-    --help | -h) usage_of "${BASH_SOURCE[0]}" && exit ;;
-    --scene | --size | --frames | --spp | --device | --preset | --set | --only)
-        need_value "$1" $#
-        case $1 in
-        --scene) scene=$2 ;;
-        --size) size=$2 ;;
-        --frames) frames=$2 ;;
-        --spp) spp=$2 ;;
-        --device) device=(--device "$2") ;;
-        --preset) preset=$2 ;;
-        --set) settings+=(--set "$2") ;;
-        --only) only=$2 ;;
-        esac
-        shift
-        ;;
-    -*) fail 1 "unknown option $1 (see --help)" ;;
-    *) pictures=$1 ;;
-    esac
-    shift
-done
+read_options scene= size= frames= spp= device++=device preset= set++=settings only= -- "$@"
+pictures=${operands[0]:-$root/tools/pictures}
 mkdir -p "$out" "$pictures"
 build_programs
 package=$(package_of "$scene")

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Installs the Debian 12 packages that Lumicut needs and that are not there yet; README.md says what each is for.
-#   tools/setup.sh          installs what is missing; where nothing is, only looks (well under a second)
+# Installs the Debian 12 packages that Lumicut needs and that are not there yet; docs/building.md says what each is for.
+#   tools/setup.sh          installs what is missing; where nothing is missing, takes less than a second
 #   tools/setup.sh --list   prints the packages
 set -euo pipefail
 
@@ -19,7 +19,7 @@ packages=(
     # tools, and what several programs share
     libarchive-dev libcli11-dev libfmt-dev libopenexr-dev libssl-dev
     # tests
-    clang-14 libclang-rt-14-dev libgtest-dev python3-jsonschema vulkan-validationlayers xauth xvfb zstd
+    clang-14 clang-format-14 clang-tidy-14 libclang-rt-14-dev libgtest-dev python3-jsonschema vulkan-validationlayers xauth xvfb zstd
 )
 
 if [[ ${1-} == --list ]]; then
@@ -37,7 +37,7 @@ for tool in apt-get dpkg-query; do
         fail "there is no $tool here; this script knows Debian 12 only. Install by other means: ${packages[*]}"
 done
 
-# dpkg-query exits with 1 where it knows nothing of a name; that package is then simply missing.
+# dpkg-query exits with 1 for an unknown name; that package then counts as missing.
 installed=" $(dpkg-query -W -f='${Package}:${db:Status-Status} ' "${packages[@]}" 2>/dev/null || true)"
 missing=()
 for package in "${packages[@]}"; do
@@ -54,8 +54,8 @@ if ((EUID != 0)); then
     command -v sudo >/dev/null || fail "installing needs root; run as root: apt-get install ${missing[*]}"
     as_root=(sudo)
 fi
-# sudo keeps neither variables nor descriptors, so both are made behind it: 3 takes apt's status lines to stdout. On 1
-# itself they must not go: apt closes that descriptor for dpkg, and maintainer scripts that print would fail.
+# sudo keeps neither variables nor descriptors, so both are set after it: descriptor 3 takes apt's status lines to stdout.
+# Descriptor 1 itself would not do: apt closes it for dpkg, and maintainer scripts that print would fail.
 apt=("${as_root[@]}" env DEBIAN_FRONTEND=noninteractive sh -c 'exec apt-get "$@" 3>&1' apt-get
     -q -y -o Dpkg::Use-Pty=0 -o DPkg::Lock::Timeout=300)
 

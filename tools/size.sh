@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Prints the stripped size of the player and of every shared library it loads, and fails where it carries or loads
-# anything of the compiler's.
+# Prints the stripped size of the player and of every shared library it loads, and fails if it contains or loads
+# any library of the compiler.
 #   tools/size.sh [PLAYER]     default build/release/bin/lumicut-play
 set -euo pipefail
 player=${1:-$(dirname "${BASH_SOURCE[0]}")/../build/release/bin/lumicut-play}

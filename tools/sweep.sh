@@ -1,9 +1,11 @@
 #!/usr/bin/env bash
-# Compiles and renders every glTF file below folders, and prints what became of each.
+# Compiles and renders every glTF file below folders, and prints the result of each.
 #   tools/sweep.sh [OPTION...] DIR...
 #     -j N, --jobs N     files at a time; default as many as there are processors
 #     --size WxH         of the pictures; default 96x54
 #     --frames N         of each picture; default 4
+#     --mode MODE        of them, as lumicut-play takes it; default gi. On software Vulkan, preparing kernels for mode
+#                        reference takes a fifth of the time, and 32 frames are few enough
 #     --timeout SECONDS  for each compilation and each picture; default 60
 #     --largest MB       leaves out files that are larger, with the buffers and images in their folder; default 200
 #     --no-pictures      compiles only
@@ -11,35 +13,14 @@
 # A row: number, result, triangles, seconds and bytes of the package, items that were damaged, file, and why it was refused.
 # Results: ok; repaired (damaged items were replaced, with warnings); refused; crashed; timeout; dark (compiled, no picture).
 # sheet.png shows the pictures under their numbers. Where FILE.report.json of glTF-Validator lies beside a file, a last list
-# names files with errors in it that were compiled without a word about damage.
+# names files with errors in it that were compiled without a warning about damage.
 # Exit code 4 where anything crashed or ran out of time, else 0. LUMICUT_BIN=FOLDER uses the programs there instead of building.
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/bench/scenes.sh"
 
-jobs=$(nproc) size=96x54 frames=4 timeout=60 largest=200 pictures=1 out=$root/build/sweep
-folders=()
-while (($#)); do
-    case $1 in
-    --help | -h) usage_of "${BASH_SOURCE[0]}" && exit ;;
-    --no-pictures) pictures=0 ;;
-    -j | --jobs | --size | --frames | --timeout | --largest | --out)
-        need_value "$1" $#
-        case $1 in
-        -j | --jobs) jobs=$2 ;;
-        --size) size=$2 ;;
-        --frames) frames=$2 ;;
-        --timeout) timeout=$2 ;;
-        --largest) largest=$2 ;;
-        --out) out=$2 ;;
-        esac
-        shift
-        ;;
-    -*) fail 1 "unknown option $1 (see --help)" ;;
-    *) folders+=("$1") ;;
-    esac
-    shift
-done
-((${#folders[@]})) || fail 1 "name a folder (see --help)"
+jobs=$(nproc) size=96x54 frames=4 mode=gi timeout=60 largest=200 no_pictures=0 out=$root/build/sweep
+read_options j=jobs jobs= size= frames= mode= timeout= largest= no-pictures out= -- "$@"
+((${#operands[@]})) || fail 1 "name a folder (see --help)"
 [[ -n ${LUMICUT_BIN-} ]] || "$root/tools/build.sh" release lumicut-compile lumicut-play lumicut-sheet >&2
 rm -rf "$out/rows" "$out/pictures"
 mkdir -p "$out/rows" "$out/pictures"
@@ -49,7 +30,7 @@ json_number() {
     sed -n "s/^ *\"$1\": *\([0-9.e+-]*\),\{0,1\}$/\1/p" "$2" | head -n 1
 }
 
-# ended CODE: what an exit code says of a program.
+# ended CODE: how a program with that exit code ended.
 ended() {
     case $1 in
     0) echo ok ;;
@@ -70,10 +51,10 @@ sweep_one() {
         bytes=$(stat -c %s "$base.lumi")
         damaged=$(grep -c '"damage": true' "$base.json" || true)
         ((damaged == 0)) || result=repaired
-        if ((pictures)); then
+        if ((!no_pictures)); then
             code=0
-            timeout -k 5 "$timeout" "$bin/lumicut-play" "$base.lumi" --headless --size "$size" --frames "$frames" --preset preview \
-                --output "$out/pictures/$number.png" >"$base.log" 2>&1 || code=$?
+            timeout -k 5 "$timeout" "$bin/lumicut-play" "$base.lumi" --headless --size "$size" --frames "$frames" --mode "$mode" \
+                --preset preview --output "$out/pictures/$number.png" >"$base.log" 2>&1 || code=$?
             case $(ended "$code") in
             ok) ;;
             refused) result=dark reason="lumicut-play ends with $code: $(tail -n 1 "$base.log")" ;;
@@ -90,10 +71,10 @@ sweep_one() {
         >"$base.row"
 }
 export -f sweep_one ended json_number
-export out bin timeout size frames pictures
+export out bin timeout size frames mode no_pictures
 
-files=$(find "${folders[@]}" -type f \( -iname '*.gltf' -o -iname '*.glb' \) -size "-$((largest * 1024))k" | LC_ALL=C sort)
-[[ -n $files ]] || fail 2 "there are no glTF files below ${folders[*]}"
+files=$(find "${operands[@]}" -type f \( -iname '*.gltf' -o -iname '*.glb' \) -size "-$((largest * 1024))k" | LC_ALL=C sort)
+[[ -n $files ]] || fail 2 "there are no glTF files below ${operands[*]}"
 nl -n rz -w 4 <<<"$files" | tr '\t\n' '\0\0' | xargs -0 -n 2 -P "$jobs" bash -c 'sweep_one "$@"' _
 
 printf '%-4s %-8s %10s %8s %11s %7s  %s\n' no. result triangles seconds bytes damaged file

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# How soon mode gi comes near the truth on two Cornell boxes at 256x256: seconds and relMSE after 1, 2, 4, ... frames, next
+# Convergence of mode gi on two Cornell boxes at 256x256: seconds and relMSE after 1, 2, 4, ... frames, next
 # to what Blender's Cycles took. The scenes are not part of the repository; without them the script says so and ends.
 #   tools/time_to_truth.sh [OPTION...] [OUTDIR]    OUTDIR: packages and references; default build/truth
 #     --quick            references of 512 samples, 8 frames
@@ -13,28 +13,10 @@
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/bench/scenes.sh"
 
-spp= frames= quick=0 size=256x256 out=$root/build/truth
+spp= frames= quick=0 size=256x256
 settings=()
-while (($#)); do
-    case $1 in
-    --help | -h) usage_of "${BASH_SOURCE[0]}" && exit ;;
-    --quick) quick=1 ;;
-    --frames | --spp | --size | --preset | --set)
-        need_value "$1" $#
-        case $1 in
-        --frames) frames=$2 ;;
-        --spp) spp=$2 ;;
-        --size) size=$2 ;;
-        --preset) settings+=(--preset "$2") ;;
-        --set) settings+=(--set "$2") ;;
-        esac
-        shift
-        ;;
-    -*) fail 1 "unknown option $1 (see --help)" ;;
-    *) out=$1 ;;
-    esac
-    shift
-done
+read_options quick frames= spp= size= preset++=settings set++=settings -- "$@"
+out=${operands[0]:-$root/build/truth}
 : "${spp:=$((quick ? 512 : 4096))}" "${frames:=$((quick ? 8 : 64))}"
 if [[ ! -d $shared/scenes/truth ]]; then
     echo "time_to_truth.sh: skipping: there is no $shared/scenes/truth"

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# How true the pictures of mode gi are: one table of errors against the path-traced reference, with the goals.
+# The accuracy of mode gi: one table of errors against the path-traced reference, with the goals.
 #   tools/truth.sh [OPTION...] [OUTDIR]    OUTDIR: packages, references and pictures; default build/truth
 #     --quick            small pictures, references of 256 samples, 16 frames
 #     --scenes A,B,...   default all that tools/bench/scenes.sh measures and of which the files are there
@@ -8,44 +8,23 @@
 #     --frames N         frames of the second picture; default 256
 #     --size WxH         of all pictures; default 256x256 for the boxes, 256x192 for closed rooms, 320x180 for the rest
 #     --terms            also each light-path term alone
-#     --noise            also what noise is in it: a row for a second reference against the first, and the standard
+#     --noise            also the noise in the errors: a row for a second reference against the first, and the standard
 #                        error of the terms' ratios, from four pictures and four references of a quarter of the samples
 #     --set NAME=VALUE   a setting of mode gi; repeatable
-# Some scenes have a twin, whose picture is the measure, in mode reference too (term "KIND:TWIN"). leak: what the scene has
-# more than its twin is light that does not belong there. same: both look alike, pixel by pixel. equal: both are equally
-# bright, but for noise. like: they should come near each other, without a goal, as their shapes differ.
+# Some scenes are compared with a twin scene, in mode reference, too (term "KIND:TWIN"). leak: light that the scene has and its
+# twin has not is a leak. same: both look the same, pixel by pixel. equal: both are equally bright, up to noise. like: they
+# should be similar, without a goal, because their shapes differ.
 # The reference's own noise is part of every error. References are kept and found again by the package's bytes: delete
 # them when the path tracer has changed. LUMICUT_BIN=FOLDER uses the programs there instead of building.
 # Exit code 4 where a picture could not be rendered, else 0, whatever the errors.
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/bench/scenes.sh"
 
-quick=0 terms=0 noise=0 spp= frames= size= presets=default,preview out=$root/build/truth
+quick=0 terms=0 noise=0 spp= frames= size= presets=default,preview
 scenes=$(measured_scenes)
 settings=()
-while (($#)); do
-    case $1 in
-    --help | -h) usage_of "${BASH_SOURCE[0]}" && exit ;;
-    --quick) quick=1 ;;
-    --terms) terms=1 ;;
-    --noise) noise=1 ;;
-    --scenes | --presets | --spp | --frames | --size | --set)
-        need_value "$1" $#
-        case $1 in
-        --scenes) scenes=$2 ;;
-        --presets) presets=$2 ;;
-        --spp) spp=$2 ;;
-        --frames) frames=$2 ;;
-        --size) size=$2 ;;
-        --set) settings+=(--set "$2") ;;
-        esac
-        shift
-        ;;
-    -*) fail 1 "unknown option $1 (see --help)" ;;
-    *) out=$1 ;;
-    esac
-    shift
-done
+read_options quick terms noise scenes= presets= spp= frames= size= set++=settings -- "$@"
+out=${operands[0]:-$root/build/truth}
 : "${spp:=$((quick ? 256 : 4096))}" "${frames:=$((quick ? 16 : 256))}"
 for scene in ${scenes//,/ }; do
     of_scene "$scene" name >/dev/null

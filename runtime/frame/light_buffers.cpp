@@ -1,17 +1,20 @@
 #include "runtime/frame/light_buffers.h"
 
-LightBuffers::LightBuffers(const Device& device, uint32_t pixel_count)
-    : emission(device.array<gpu::vec3>("light.emission", pixel_count)),
-      sharp_direct(device.array<gpu::vec3>("light.sharp_direct", pixel_count)),
-      direct(device.array<gpu::vec3>("light.direct", pixel_count)),
-      indirect(device.array<gpu::vec3>("light.indirect", pixel_count)),
-      glossy(device.array<gpu::vec3>("light.glossy", pixel_count)),
-      caustics(device.array<gpu::vec3>("light.caustics", pixel_count))
+LightBuffers::LightBuffers(const Device& device, uint32_t point_count)
+    : emission(device.array<gpu::vec3>("light.emission", point_count)),
+      sharp_direct(device.array<gpu::vec3>("light.sharp_direct", point_count)),
+      direct(device.array<gpu::vec3>("light.direct", point_count)),
+      indirect(device.array<gpu::vec3>("light.indirect", point_count)),
+      glossy(device.array<gpu::vec3>("light.glossy", point_count)),
+      caustics(device.array<gpu::vec3>("light.caustics", point_count))
 {
 }
 
-void LightBuffers::clear(Recorder& rec) const
+void LightBuffers::clear(Recorder& rec, uint32_t terms) const
 {
-    for (const Buffer* light : all())
-        rec.clear(*light);
+    const std::pair<uint32_t, const Buffer*> added[] = {
+        {gpu::kLightSharpDirect, &sharp_direct}, {gpu::kLightDirect, &direct}, {gpu::kLightIndirect, &indirect}, {gpu::kLightGlossy, &glossy}, {gpu::kLightCaustics, &caustics}};
+    for (const auto& [term, light] : added)
+        if ((terms & term) != 0)
+            rec.clear(*light);
 }

@@ -2,13 +2,12 @@
 #pragma once
 #include "format/gpu_scene.h"
 #include "runtime/gpu/recorder.h"
+#include "shaders/compose/compose.h"
 
-#include <array>
-
-/// vec3[pixel_count] each, W/(m^2 sr): what every pixel shows of it. Stages add to what clear() left black.
+/// vec3[point_count] each, W/(m^2 sr): what every shading point shows of it. Stages add to what clear() left black.
 struct LightBuffers
 {
-    LightBuffers(const Device& device, uint32_t pixel_count);
+    LightBuffers(const Device& device, uint32_t point_count);
 
     Buffer emission;     // also of the sky, in mirrors too
     Buffer sharp_direct; // of lights that come from one place: without noise
@@ -17,6 +16,6 @@ struct LightBuffers
     Buffer glossy;
     Buffer caustics;
 
-    std::array<const Buffer*, 6> all() const { return {&emission, &sharp_direct, &direct, &indirect, &glossy, &caustics}; }
-    void clear(Recorder& rec) const;
+    /// Makes terms black. @param terms gpu::kLight* bits; emission, which is written and not added to, is left as it is
+    void clear(Recorder& rec, uint32_t terms) const;
 };

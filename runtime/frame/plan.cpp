@@ -24,20 +24,26 @@ bool shows(const Settings& settings, uint32_t term)
 }
 
 /// A standing picture needs the filter less with every frame: for four times the samples one pass less, until none is left
-/// and the picture is on its way to what it should be.
+/// and the picture is on its way to what it should be. Histories spare a pass, too.
 uint32_t denoisePasses(const Settings& settings, const FrameTraits& traits, const FrameInfo& frame)
 {
-    const uint32_t fewer = uint32_t(std::bit_width(frame.accumulated + 1)) / 2;
+    const uint32_t fewer = uint32_t(std::bit_width(frame.accumulated + 1)) / 2 + (frame.previous && settings.history_frames > 0 ? 1 : 0);
     const bool noisy = traits.has_noisy_direct || traits.has_specular;
     return noisy && settings.view == gpu::kViewNone && settings.denoise_passes > fewer ? settings.denoise_passes - fewer : 0;
 }
 } // namespace
+
+bool goesOn(const Settings& settings)
+{
+    return settings.view == gpu::kViewNone && (settings.history_frames > 0 || settings.antialias_frames > 0);
+}
 
 FramePlan planFrame(const Settings& settings, const FrameTraits& traits, const FrameInfo& frame)
 {
     FramePlan plan{};
     plan.emission = shows(settings, gpu::kTermEmission);
     plan.direct = shows(settings, gpu::kTermDirect);
+    plan.noisy_direct = plan.direct && traits.has_noisy_direct;
     plan.indirect = shows(settings, gpu::kTermIndirect);
     plan.glossy = traits.has_specular && shows(settings, gpu::kTermGlossy);
     plan.caustics = traits.has_specular && shows(settings, gpu::kTermCaustics);
@@ -55,6 +61,8 @@ FramePlan planFrame(const Settings& settings, const FrameTraits& traits, const F
     // diffuse, whose third reflections are too faint to matter.
     plan.chain_depth = traits.has_mirrors ? settings.specular_depth : std::min(settings.specular_depth, 2u);
     plan.denoise_passes = denoisePasses(settings, traits, frame);
+    plan.remembers = settings.history_frames > 0 && goesOn(settings) && !frame.stands();
+    plan.antialiases = settings.antialias_frames > 0 && goesOn(settings) && !frame.stands();
     plan.sure_reflectance = frame.stands() ? kSureStanding : kSureInMotion;
     return plan;
 }

@@ -1,6 +1,7 @@
 // What a frame of mode gi does, decided before any of it is recorded.
 #pragma once
 #include "runtime/frame/frame_info.h"
+#include "runtime/frame/light_buffers.h"
 #include "runtime/settings.h"
 
 /// What a scene, and the room that was made for it, let a frame do.
@@ -19,15 +20,27 @@ struct FrameTraits
 struct FramePlan
 {
     bool emission, direct, indirect, glossy, caustics; // terms that the frame shows
+    bool noisy_direct;       // direct light that one ray does not tell the whole of
     bool makes_map;          // photons, their tree and the cut are wanted
     bool gathers_at_samples; // final gathering at irradiance samples, between which pixels interpolate
     bool gathers_at_pixels;  // final gathering at every pixel instead
     bool harmonics;          // rough reflection comes from the samples' harmonics where they can tell it
     uint32_t chain_depth;    // delta events that gathering rays follow
     uint32_t denoise_passes; // of the filter over what is noisy; 0: none
+    bool remembers;          // light goes into histories, and out of them where frame.previous is there
+    bool antialiases;        // the picture is blended with the last one
     float sure_reflectance;  // what reflects this much sends a glossy ray from every pixel
 
+    /// gpu::kLight* bits of the terms that the frame makes.
+    uint32_t lightTerms() const
+    {
+        return (emission ? gpu::kLightEmission : 0u) | (direct ? gpu::kLightSharpDirect : 0u) | (direct && noisy_direct ? gpu::kLightDirect : 0u) |
+               (indirect ? gpu::kLightIndirect : 0u) | (glossy ? gpu::kLightGlossy : 0u) | (caustics ? gpu::kLightCaustics : 0u);
+    }
     bool operator==(const FramePlan&) const = default;
 };
+
+/// Whether frames of such settings may go on from what the frame before them found.
+bool goesOn(const Settings& settings);
 
 FramePlan planFrame(const Settings& settings, const FrameTraits& traits, const FrameInfo& frame);

@@ -1,10 +1,11 @@
-// What the pixels of a frame see.
+// What the pixels of a frame see: one point each, and a second where a mirror lies over it.
 #pragma once
 #include "runtime/gpu/gpu.h"
 #include "shaders/primary/primary.h"
 
 struct SurfaceBuffers
 {
-    const Buffer& points;         // gpu::ShadingPoint[pixel_count]
-    const Buffer& diffuse_points; // gpu::DiffusePoint[pixel_count], with a texel view
+    const Buffer& points;         // gpu::ShadingPoint[point_count]; the second point of a pixel lies pixel_count after the first
+    const Buffer& diffuse_points; // gpu::DiffusePoint[point_count], with a texel view
+    uint32_t point_count;         // pixels, or twice as many
 };

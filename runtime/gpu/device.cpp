@@ -2,13 +2,18 @@
 
 #include "format/block_texture.h"
 #include "format/gpu_scene.h"
+#include "runtime/gpu/cache_folder.h"
 
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <cstdlib>
 #include <fstream>
 #include <iterator>
+
+namespace
+{
+constexpr uint64_t kStagingBytes = uint64_t(16) << 20;
+} // namespace
 
 Result<std::unique_ptr<Device>> Device::create(const Instance& instance, uint32_t index, bool present)
 {
@@ -101,6 +106,7 @@ Device::~Device()
     if (!device_)
         return;
     waitIdle();
+    staging_ = {};
     kernels_.clear();
     savePipelineCache();
     vkDestroyPipelineCache(device_, pipeline_cache_, nullptr);
@@ -125,13 +131,10 @@ void Device::nameObject(VkObjectType type, uint64_t handle, std::string_view nam
 
 void Device::loadPipelineCache()
 {
-    const char* cache_home = std::getenv("XDG_CACHE_HOME");
-    const char* home = std::getenv("HOME");
     std::vector<char> data;
-    if (cache_home || home)
+    if (const auto folder = cacheFolder())
     {
-        const auto folder = (cache_home ? std::filesystem::path(cache_home) : std::filesystem::path(home) / ".cache") / "lumicut";
-        pipeline_cache_path_ = folder / fmt::format("pipelines-{:04x}-{:04x}-{:08x}.bin", properties_.vendorID,
+        pipeline_cache_path_ = *folder / fmt::format("pipelines-{:04x}-{:04x}-{:08x}.bin", properties_.vendorID,
                                                     properties_.deviceID, properties_.driverVersion);
         std::ifstream file(pipeline_cache_path_, std::ios::binary);
         data.assign(std::istreambuf_iterator<char>(file), {});
@@ -368,6 +371,16 @@ Buffer Device::withTexels(Buffer buffer) const
     return buffer;
 }
 
+const Buffer& Device::staging(uint64_t bytes) const
+{
+    if (staging_.size() < bytes)
+    {
+        staging_ = {}; // before the next, so that there is never more than one
+        staging_ = buffer("staging", std::max(bytes, kStagingBytes), Placement::kStaging);
+    }
+    return staging_;
+}
+
 Buffer Device::uploadBytes(std::string_view name, std::span<const std::byte> data) const
 {
     Buffer target = buffer(name, std::max<size_t>(data.size(), 16), Placement::kDevice);
@@ -376,15 +389,13 @@ Buffer Device::uploadBytes(std::string_view name, std::span<const std::byte> dat
         std::memcpy(target.mapped().data(), data.data(), data.size());
         return target;
     }
-    if (data.empty())
-        return target;
-    const Buffer staging = buffer("staging", data.size(), Placement::kStaging);
-    std::memcpy(staging.mapped().data(), data.data(), data.size());
-    submitOnce([&](VkCommandBuffer commands)
+    for (uint64_t begin = 0; begin < data.size(); begin += kStagingBytes)
     {
-        const VkBufferCopy copy{.size = data.size()};
-        vkCmdCopyBuffer(commands, staging.handle(), target.handle(), 1, &copy);
-    });
+        const VkBufferCopy copy{.dstOffset = begin, .size = std::min(data.size() - begin, kStagingBytes)};
+        const Buffer& from = staging(copy.size);
+        std::memcpy(from.mapped().data(), data.data() + begin, copy.size);
+        submitOnce([&](VkCommandBuffer commands) { vkCmdCopyBuffer(commands, from.handle(), target.handle(), 1, &copy); });
+    }
     return target;
 }
 
@@ -470,29 +481,50 @@ Image Device::uploadImage(std::string_view name, const ImageShape& shape, std::s
     vulkanCheck(vkBindImageMemory(device_, image.image_, image.memory_, 0));
     nameObject(VK_OBJECT_TYPE_IMAGE, uint64_t(image.image_), name);
 
-    const Buffer staging = buffer("staging", data.size(), Placement::kStaging);
-    std::memcpy(staging.mapped().data(), data.data(), data.size());
-    std::vector<VkBufferImageCopy> copies;
-    uint64_t offset = 0;
+    uint64_t offset = 0; // of what has been copied
+    const auto copy = [&](std::span<const VkBufferImageCopy> copies, uint64_t bytes, bool last)
+    {
+        check(offset + bytes <= data.size(), "image '{}' needs more than {} bytes", name, data.size());
+        const Buffer& from = staging(bytes);
+        std::memcpy(from.mapped().data(), data.data() + offset, bytes);
+        submitOnce([&](VkCommandBuffer commands)
+        {
+            if (offset == 0)
+                transition(commands, image.image_, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 0,
+                           VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_2_NONE, VK_PIPELINE_STAGE_2_TRANSFER_BIT);
+            vkCmdCopyBufferToImage(commands, from.handle(), image.image_, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                                   uint32_t(copies.size()), copies.data());
+            if (last)
+                transition(commands, image.image_, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
+                           VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_ACCESS_2_SHADER_READ_BIT, VK_PIPELINE_STAGE_2_TRANSFER_BIT,
+                           VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT);
+        });
+        offset += bytes;
+    };
+    std::vector<VkBufferImageCopy> copies; // what still fits into one go
+    uint64_t bytes = 0;
     for (uint32_t level = 0; level < shape.levels; ++level)
     {
         const uint32_t width = std::max(shape.width >> level, 1u), height = std::max(shape.height >> level, 1u);
-        copies.push_back({.bufferOffset = offset,
-                          .imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, level, 0, shape.layers},
-                          .imageExtent = {width, height, 1}});
-        offset += levelBytes(shape.format, width, height) * shape.layers;
+        for (uint32_t layer = 0; layer < shape.layers; ++layer)
+        {
+            const uint64_t layer_bytes = levelBytes(shape.format, width, height);
+            if (bytes > 0 && bytes + layer_bytes > kStagingBytes)
+            {
+                copy(copies, bytes, false);
+                copies.clear();
+                bytes = 0;
+            }
+            copies.push_back({.bufferOffset = bytes,
+                              .imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, level, layer, 1},
+                              .imageExtent = {width, height, 1}});
+            bytes += layer_bytes;
+        }
     }
+    copy(copies, bytes, true);
     check(offset == data.size(), "image '{}' needs {} bytes, not {}", name, offset, data.size());
-    submitOnce([&](VkCommandBuffer commands)
-    {
-        transition(commands, image.image_, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 0,
-                   VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_2_NONE, VK_PIPELINE_STAGE_2_TRANSFER_BIT);
-        vkCmdCopyBufferToImage(commands, staging.handle(), image.image_, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
-                               uint32_t(copies.size()), copies.data());
-        transition(commands, image.image_, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
-                   VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_ACCESS_2_SHADER_READ_BIT, VK_PIPELINE_STAGE_2_TRANSFER_BIT,
-                   VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT);
-    });
+    if (staging_.size() > kStagingBytes) // a layer was larger than that
+        staging_ = {};
 
     const VkImageViewCreateInfo view{
         .sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,

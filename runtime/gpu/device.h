@@ -111,6 +111,8 @@ private:
     Buffer buffer(std::string_view name, uint64_t bytes, Placement placement) const;
     Buffer withTexels(Buffer buffer) const;
     Buffer uploadBytes(std::string_view name, std::span<const std::byte> data) const;
+    /// Memory that the CPU writes and the GPU copies from, of at least `bytes`; what was in it is lost.
+    const Buffer& staging(uint64_t bytes) const;
     void downloadBytes(const Buffer& source, std::span<std::byte> data) const;
     VkDeviceMemory allocate(const VkMemoryRequirements& needs, Placement placement, bool& host_visible) const;
     template <typename Record>
@@ -130,6 +132,7 @@ private:
     std::filesystem::path pipeline_cache_path_;
     PFN_vkSetDebugUtilsObjectNameEXT set_name_ = nullptr;
     mutable std::map<std::pair<std::string, std::vector<ConstantValue>>, Kernel> kernels_; // by name and constants
+    mutable Buffer staging_; // kept: drivers take longer to lock such memory in place than to copy what goes through it
     mutable double pipeline_ms_ = 0;
     mutable uint64_t allocated_bytes_ = 0;
 };

@@ -8,8 +8,8 @@ class ComposeStage
 public:
     ComposeStage(const Device& device, uint32_t max_pixels);
 
-    /// The terms that `plan` shows. @return vec3[point_count], W/(m^2 sr)
-    const Buffer& record(Recorder& rec, const LightBuffers& light, const FramePlan& plan, uint32_t point_count) const;
+    /// The terms that `plan` shows. @return vec3[pixel_count], W/(m^2 sr)
+    const Buffer& record(Recorder& rec, const LightBuffers& light, const FramePlan& plan, uint32_t pixel_count, uint32_t point_count) const;
 
 private:
     Kernel sum_;

@@ -2,16 +2,25 @@
 
 #include "runtime/camera.h"
 
-PrimaryStage::PrimaryStage(const Device& device, const SceneGpu& scene, uint32_t max_pixels)
-    : has_specular_(scene.hasFeature(gpu::kFeatureSpecular)),
+PrimaryStage::PrimaryStage(const Device& device, const SceneGpu& scene, uint32_t max_pixels, bool splits)
+    : has_specular_(scene.hasFeature(gpu::kFeatureSpecular)), splits_(splits),
       generate_(device.kernel("primary/generate")),
       chain_(device.kernel("primary/chain", scene.constants())),
-      queue_(device, "primary.queue", max_pixels),
-      next_queue_(device, "primary.next_queue", max_pixels),
-      hits_(device.texelArray<gpu::Hit>("primary.hits", max_pixels)),
-      points_(device.array<gpu::ShadingPoint>("primary.points", max_pixels)),
-      diffuse_points_(device.texelArray<gpu::DiffusePoint>("primary.diffuse_points", max_pixels))
+      queue_(device, "primary.queue", max_pixels * (splits ? 2 : 1)),
+      next_queue_(device, "primary.next_queue", max_pixels * (splits ? 2 : 1)),
+      hits_(device.texelArray<gpu::Hit>("primary.hits", max_pixels * (splits ? 2 : 1))),
+      points_(device.array<gpu::ShadingPoint>("primary.points", max_pixels * (splits ? 2 : 1))),
+      diffuse_points_(device.texelArray<gpu::DiffusePoint>("primary.diffuse_points", max_pixels * (splits ? 2 : 1)))
 {
+}
+
+/// Of a pixel: what each frame of a moving picture shows of it. The frames are blended, which blurs once more.
+constexpr float kMovingShare = 0.5f;
+
+float PrimaryStage::textureWidth(const gpu::CameraParams& camera)
+{
+    const float share = camera.jitter.x < 0 ? 1 / float(camera.first_sample + 1) : kMovingShare;
+    return kTextureBlur * pixelSide(camera) * share;
 }
 
 SurfaceBuffers PrimaryStage::record(Recorder& rec, const RayStage& rays, const Input& in) const
@@ -23,13 +32,13 @@ SurfaceBuffers PrimaryStage::record(Recorder& rec, const RayStage& rays, const I
 
     const RayQueue* queue = &queue_;
     const RayQueue* next = &next_queue_;
-    // The frames of a standing picture share out its pixels: each shows its own part, so that textures come out sharp.
-    const float width = kTextureBlur * pixelSide(in.camera) / float(in.camera.first_sample + 1);
+    const float width = textureWidth(in.camera);
     const uint32_t depth_limit = has_specular_ ? in.specular_depth : 0;
     for (uint32_t depth = 0; depth <= depth_limit; ++depth)
     {
         const gpu::ChainParams params{.depth = depth,
                                       .depth_limit = depth_limit,
+                                      .splits = splits_ && depth == 0,
                                       .pixel_count = pixel_count,
                                       .first_sample = in.camera.first_sample,
                                       .seed = in.camera.seed,
@@ -44,5 +53,5 @@ SurfaceBuffers PrimaryStage::record(Recorder& rec, const RayStage& rays, const I
         rays.close(rec, next->size);
         std::swap(queue, next);
     }
-    return {.points = points_, .diffuse_points = diffuse_points_};
+    return {.points = points_, .diffuse_points = diffuse_points_, .point_count = pixel_count * (splits_ ? 2 : 1)};
 }

@@ -1,4 +1,4 @@
-// Camera rays and their specular chains: one shading point a pixel.
+// Camera rays and their specular chains: one shading point a pixel, or two.
 #pragma once
 #include "runtime/frame/surface_buffers.h"
 #include "runtime/stages/rays.h"
@@ -10,18 +10,23 @@ public:
     /// Of a pixel: what textures are blurred over, a little less than one sample a pixel can show.
     static constexpr float kTextureBlur = 0.7f;
 
-    PrimaryStage(const Device& device, const SceneGpu& scene, uint32_t max_pixels);
+    /// Of a ray at distance 1, metres (perspective), or of every ray (orthographic). The frames of a standing picture share out
+    /// its pixels: each shows its own part, so that textures come out sharp.
+    static float textureWidth(const gpu::CameraParams& camera);
+
+    /// @param splits whether mirrored light gets points of its own, else it is seen by chance
+    PrimaryStage(const Device& device, const SceneGpu& scene, uint32_t max_pixels, bool splits = false);
 
     struct Input
     {
         gpu::CameraParams camera; // with sample_count 1
         uint32_t specular_depth;  // most specular events in a chain
-        const Buffer& emission;   // vec3[width * height] becomes what the chains themselves find: emitters, sky
+        const Buffer& emission;   // vec3[points] becomes what the chains themselves find: emitters, sky
     };
     SurfaceBuffers record(Recorder& rec, const RayStage& rays, const Input& in) const;
 
 private:
-    bool has_specular_;
+    bool has_specular_, splits_;
     Kernel generate_, chain_;
     RayQueue queue_, next_queue_;
     Buffer hits_, points_, diffuse_points_;

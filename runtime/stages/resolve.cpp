@@ -31,20 +31,17 @@ void ResolveStage::accumulate(Recorder& rec, const Buffer& radiance, uint32_t pi
 
 const Buffer& ResolveStage::display(Recorder& rec, uint32_t pixel_count, float exposure, Tonemap tonemap, bool bgra)
 {
-    const auto scope = rec.scope("resolve");
-    const gpu::TonemapParams params{.pixel_count = pixel_count,
-                                    .scale = std::exp2(exposure) / float(std::max(sample_count_, 1u)),
-                                    .curve = uint32_t(tonemap),
-                                    .swap_red_blue = bgra};
-    rec.run(tonemap_, pixel_count, params, {{"Sum", sum_}, {"Pixels", pixels_}});
-    return pixels_;
+    return display(rec, sum_, 1 / float(std::max(sample_count_, 1u)), pixel_count, exposure, tonemap, bgra);
 }
 
-const Buffer& ResolveStage::displayColors(Recorder& rec, const Buffer& colors, uint32_t pixel_count, bool bgra)
+const Buffer& ResolveStage::display(Recorder& rec, const Buffer& picture, float scale, uint32_t pixel_count, float exposure,
+                                    Tonemap tonemap, bool bgra)
 {
     const auto scope = rec.scope("resolve");
-    const gpu::TonemapParams params{
-        .pixel_count = pixel_count, .scale = 1, .curve = gpu::kTonemapSrgb, .swap_red_blue = bgra};
-    rec.run(tonemap_, pixel_count, params, {{"Sum", colors}, {"Pixels", pixels_}});
+    const gpu::TonemapParams params{.pixel_count = pixel_count,
+                                    .scale = std::exp2(exposure) * scale,
+                                    .curve = uint32_t(tonemap),
+                                    .swap_red_blue = bgra};
+    rec.run(tonemap_, pixel_count, params, {{"Sum", picture}, {"Pixels", pixels_}});
     return pixels_;
 }

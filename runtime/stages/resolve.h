@@ -16,8 +16,14 @@ public:
     void accumulate(Recorder& rec, const Buffer& radiance, uint32_t pixel_count, uint32_t sample_count);
     /// @param exposure in stops. @return packed 8-bit sRGB pixels, uint[pixel_count], RGBA or BGRA in memory order
     const Buffer& display(Recorder& rec, uint32_t pixel_count, float exposure, Tonemap tonemap, bool bgra);
+    /// The same of another picture. @param picture vec3[pixel_count], of which `scale` times is shown
+    const Buffer& display(Recorder& rec, const Buffer& picture, float scale, uint32_t pixel_count, float exposure, Tonemap tonemap,
+                          bool bgra);
     /// The same of colours that are for the display as they are. @param colors vec3[pixel_count], linear
-    const Buffer& displayColors(Recorder& rec, const Buffer& colors, uint32_t pixel_count, bool bgra);
+    const Buffer& displayColors(Recorder& rec, const Buffer& colors, uint32_t pixel_count, bool bgra)
+    {
+        return display(rec, colors, 1, pixel_count, 0, Tonemap::kSrgb, bgra);
+    }
 
     const Buffer& sum() const { return sum_; } // vec3[pixel_count]
     uint32_t sampleCount() const { return sample_count_; }

@@ -5,12 +5,15 @@
 
 GPU_NAMESPACE_BEGIN
 
+GPU_CONST uint kLightEmission = 1u, kLightSharpDirect = 2u, kLightDirect = 4u, kLightIndirect = 8u, kLightGlossy = 16u, kLightCaustics = 32u;
+
 struct ComposeParams
 {
-    uint point_count;
-    uint emission; // 0: it is there, for camera rays find it, but not shown
+    uint pixel_count;
+    uint point_count; // pixels, or twice as many: two points a pixel
+    uint terms;       // kLight* bits: of which the picture is the sum
 };
-GPU_SIZE(ComposeParams, 8);
+GPU_SIZE(ComposeParams, 12);
 
 GPU_NAMESPACE_END
 #endif

@@ -3,7 +3,7 @@
 #extension GL_EXT_scalar_block_layout : require
 #include "shaders/compose/compose.h"
 
-// Adds up the terms of every pixel. Terms that are not shown are black. One thread per pixel.
+// Adds up the terms of every pixel, of both its points. One thread per pixel.
 
 layout(local_size_x = kRaysGroupSize) in;
 layout(push_constant, scalar) uniform Params { ComposeParams params; };
@@ -16,13 +16,33 @@ layout(set = 1, binding = 4, scalar) readonly buffer Glossy { vec3 glossy[]; };
 layout(set = 1, binding = 5, scalar) readonly buffer Caustics { vec3 caustics[]; };
 layout(set = 1, binding = 6, scalar) writeonly buffer Picture { vec3 picture[]; };
 
+bool has(uint term) { return (params.terms & term) != 0u; }
+
+vec3 lightOf(uint point)
+{
+    vec3 sum = vec3(0.0);
+    if (has(kLightEmission))
+        sum += emission[point];
+    if (has(kLightSharpDirect))
+        sum += sharp_direct[point];
+    if (has(kLightDirect))
+        sum += direct[point];
+    if (has(kLightIndirect))
+        sum += indirect[point];
+    if (has(kLightGlossy))
+        sum += glossy[point];
+    if (has(kLightCaustics))
+        sum += caustics[point];
+    return sum;
+}
+
 void main()
 {
     uint pixel = gl_GlobalInvocationID.x;
-    if (pixel >= params.point_count)
+    if (pixel >= params.pixel_count)
         return;
-    vec3 sum = sharp_direct[pixel] + direct[pixel] + indirect[pixel] + glossy[pixel] + caustics[pixel];
-    if (params.emission != 0u)
-        sum += emission[pixel];
+    vec3 sum = lightOf(pixel);
+    if (params.point_count > params.pixel_count)
+        sum += lightOf(params.pixel_count + pixel);
     picture[pixel] = sum;
 }

@@ -1,12 +1,13 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#include "shaders/denoise/signal.glsl"
+#include "shaders/denoise/denoise.h"
+#include "shaders/lib/signal.glsl"
 #include "shaders/lib/tile.glsl"
 
 // One pass of an edge-avoiding wavelet filter (Dammertz et al. 2010): each pixel becomes the weighted mean of nine, `step_`
 // pixels apart. Light and reflectance get the same weights, so that their ratio is the light around, textures left out. The
-// first pass estimates the noise; those after it take a difference in brightness beyond the noise for one in the scene (Schied
+// first pass estimates the noise where no history tells it; where it is known, passes take a difference in brightness beyond the noise for one in the scene (Schied
 // et al. 2017, "Spatiotemporal Variance-Guided Filtering"). One thread per pixel.
 
 layout(local_size_x = kRaysGroupSize) in;
@@ -14,9 +15,10 @@ layout(push_constant, scalar) uniform Params { DenoiseParams params; };
 
 layout(set = 1, binding = 0) uniform usamplerBuffer Guides;
 layout(set = 1, binding = 1) uniform usamplerBuffer Signals;
-layout(set = 1, binding = 2, scalar) writeonly buffer Filtered { DenoiseSignal filtered[]; };
+layout(set = 1, binding = 2, scalar) writeonly buffer Filtered { LightSignal filtered[]; };
 
 const float kBend = 0.25;  // of a lobe's width: how far the direction it reflects from may turn, radians
+const float kUnseen = 0.01;     // of the brightness: noise of which nothing is seen; what has a history that long is left as it is
 const float kBeyondNoise = 2.0; // standard errors
 const float kWider = 0.5;   // of a lobe's width: what makes another lobe of it
 const float kOffPlane = 0.15; // sine of the angle to the surface at which another place is no more part of it
@@ -51,14 +53,14 @@ void main()
     if (pixel >= params.point_count)
         return;
     Signal center = unpackSignal(texelFetch(Signals, int(pixel)));
-    if (center.lobe == 0.0)
+    if (center.lobe == 0.0 || (center.error >= 0.0 && center.error <= kUnseen * brightness(center)))
     {
         filtered[pixel] = packSignal(center);
         return;
     }
     Guide guide = loadGuide(pixel);
     float bright = brightness(center), weights = 1.0, squares = 1.0;
-    float mean = bright, mean2 = bright * bright, variance = square(center.error);
+    float mean = bright, mean2 = bright * bright, variance = square(max(center.error, 0.0));
     Signal sum = center;
     ivec2 size = ivec2(params.width, params.point_count / params.width), at = ivec2(pixel % params.width, pixel / params.width);
     for (int k = 0; k < 9; ++k)
@@ -73,20 +75,20 @@ void main()
             continue; // one bad sample must not spread
         float weight = exp2(-0.5 * steps2) * likeness(guide, loadGuide(neighbour), center.lobe, other.lobe,
                                                       float(params.step_) * sqrt(steps2));
-        if (params.step_ > 1u)
+        if (params.step_ > 1u || center.error >= 0.0)
             weight *= exp(-abs(other_bright - bright) /
-                          (kBeyondNoise * sqrt(square(center.error) + square(other.error)) + 1e-20));
+                          (kBeyondNoise * sqrt(square(center.error) + square(max(other.error, 0.0))) + 1e-20));
         sum.light += weight * other.light;
         sum.reflectance += weight * other.reflectance;
         weights += weight;
         squares += weight * weight;
         mean += weight * other_bright;
         mean2 += weight * square(other_bright);
-        variance += square(weight * other.error);
+        variance += square(weight * max(other.error, 0.0));
     }
     sum.light /= weights;
     sum.reflectance /= weights;
-    if (params.step_ == 1u)
+    if (params.step_ == 1u && center.error < 0.0)
         variance = max(0.0, mean2 / weights - square(mean / weights)) * squares;
     sum.error = sqrt(variance) / weights;
     filtered[pixel] = packSignal(sum);

@@ -36,6 +36,12 @@ float glossyProbability(Bsdf b, LobeProbabilities p)
 
 bool hasDeltaLobe(Bsdf b) { return b.smooth_specular || (hasClearcoat(b) && b.smooth_clearcoat); }
 
+/// Of the delta lobes that reflect.
+float mirrorProbability(Bsdf b, LobeProbabilities p)
+{
+    return (b.smooth_specular ? p.reflection : 0.0) + (hasClearcoat(b) && b.smooth_clearcoat ? p.clearcoat : 0.0);
+}
+
 // ---- Evaluation --------------------------------------------------------------------------------------------------------
 
 struct BsdfValue // towards one direction; the BSDF is the sum of both parts

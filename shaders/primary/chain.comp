@@ -21,6 +21,24 @@ layout(set = 1, binding = 7, scalar) writeonly buffer DiffusePoints { DiffusePoi
 #include "shaders/lib/hit.glsl"
 #include "shaders/lib/ray.glsl"
 
+/// At the first vertex the mirrored part of the light goes its own way, to the pixel's second point: what is seen in a pane and
+/// what is seen through it are both there in every frame. @param random picks among mirrors
+void split(Ray ray, PathVertex v, float scattered, float mirror, vec3 throughput, uint medium, float width, float random)
+{
+    LobeProbabilities p = lobeProbabilities(v.bsdf, v.wo);
+    float reflection = v.bsdf.smooth_specular ? p.reflection : 0.0;
+    bool coat = random * mirror >= reflection; // the last of the lobes
+    BsdfSample next = sampleBsdf(v.bsdf, v.wo, coat ? 1.0 : scattered + random * mirror, vec2(0.5));
+    vec3 wi = v.frame * next.wi;
+    if (next.weight == vec3(0.0) || !sidesAgree(v.surface, wi, next.wi.z))
+        return;
+    uint second = ray.path + params.pixel_count;
+    points[second].throughput = throughput * next.weight * mirror;
+    points[second].slot = mediumAfter(v, next, medium);
+    points[second].width = width;
+    next_rays[atomicAdd(next_queue.count, 1u)] = leavingRay(v.surface, wi, kInfinity, second);
+}
+
 /// What a chain's ray that met something does there. `point` and `diffuse` are updated where it is the shading point, and
 /// `point` where the chain goes on: until it is finished its point holds the throughput and width so far and, in `slot`, the
 /// medium that the ray is in. @return radiance that the surface itself sends along the ray
@@ -42,10 +60,16 @@ vec3 meetSurface(Ray ray, Hit hit, inout ShadingPoint point, inout DiffusePoint 
     disperse(v, throughput, random.y);
     Bsdf b = v.bsdf;
     LobeProbabilities p = lobeProbabilities(b, v.wo);
-    float scattered = p.diffuse + glossyProbability(b, p);
-    if (!hasDeltaLobe(b) || random.x < scattered)
+    float scattered = p.diffuse + glossyProbability(b, p), mirror = mirrorProbability(b, p), rest = 1.0;
+    if (params.splits != 0u && mirror > 0.0 && mirror < 1.0)
     {
-        throughput /= hasDeltaLobe(b) ? scattered : 1.0;
+        rest = 1.0 - mirror;
+        split(ray, v, scattered, mirror, throughput, medium, point.width, random.x);
+    }
+    float choice = rest * random.x;
+    if (!hasDeltaLobe(b) || choice < scattered)
+    {
+        throughput /= hasDeltaLobe(b) ? scattered / rest : 1.0;
         vec3 reflectance = throughput * diffuseReflectance(b, max(0.0, -dot(s.normal, direction)));
         point = ShadingPoint(s.position, hit.slot, direction, params.depth, throughput, hit.barycentrics, point.width,
                              s.back);
@@ -54,12 +78,14 @@ vec3 meetSurface(Ray ray, Hit hit, inout ShadingPoint point, inout DiffusePoint 
         diffuse = DiffusePoint(s.position - min(clearance(s), s.back) * direction, unitToOctahedral(s.smooth_normal), reflectance);
         return light;
     }
-    BsdfSample next = sampleBsdf(b, v.wo, random.x, vec2(0.5));
+    if (rest < 1.0 && b.smooth_specular) // what is left goes through
+        choice += p.reflection;
+    BsdfSample next = sampleBsdf(b, v.wo, choice, vec2(0.5));
     vec3 wi = v.frame * next.wi;
     if (params.depth >= params.depth_limit || next.weight == vec3(0.0) || !sidesAgree(s, wi, next.wi.z))
         return light;
     medium = mediumAfter(v, next, medium);
-    point.throughput = throughput * next.weight;
+    point.throughput = throughput * next.weight * rest;
     point.slot = medium;
     next_rays[atomicAdd(next_queue.count, 1u)] = leavingRay(s, wi, kInfinity, ray.path);
     return light;
@@ -75,6 +101,13 @@ void main()
     ShadingPoint point = ShadingPoint(vec3(0.0), kNone, ray.direction, params.depth, vec3(1.0), vec2(0.0), params.width, 0.0);
     if (params.depth == 0u)
         point.width += params.spread * length(ray.origin - params.eye); // the near plane is where it starts
+    if (params.splits != 0u)
+    {
+        uint second = ray.path + params.pixel_count;
+        points[second] = ShadingPoint(vec3(0.0), kNone, ray.direction, params.depth, vec3(0.0), vec2(0.0), params.width, 0.0);
+        diffuse_points[second] = DiffusePoint(vec3(0.0), vec2(0.0), vec3(0.0));
+        radiance[second] = vec3(0.0);
+    }
     vec3 before = vec3(0.0);
     if (params.depth > 0u)
     {

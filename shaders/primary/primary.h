@@ -20,13 +20,15 @@ struct CameraParams // a ray through image position (x, y) in [-1,1]^2, y up, go
     uint sample_count; // rays a pixel in this dispatch; path = sample * width * height + pixel
     uint first_sample; // index of the first of them in the pixel's sequence
     uint seed;
+    vec2 jitter; // of every pixel's ray within the pixel, 0..1; < 0: each pixel's own, by its sampler
 };
-GPU_SIZE(CameraParams, 80);
+GPU_SIZE(CameraParams, 88);
 
 struct ChainParams
 {
     uint depth;       // specular events before this one
     uint depth_limit; // most specular events in a chain
+    uint splits;      // 1: mirrored light goes on to a second point of its own, [pixel_count + pixel]
     uint pixel_count;
     uint first_sample;
     uint seed;
@@ -34,7 +36,7 @@ struct ChainParams
     float spread; // by which it widens a metre
     vec3 eye;     // the camera's position
 };
-GPU_SIZE(ChainParams, 40);
+GPU_SIZE(ChainParams, 44);
 
 struct ShadingPoint // where a pixel's light is to be found: first vertex after E S* that scatters
 {

@@ -52,7 +52,7 @@ struct PhotonViewParams
     CameraParams camera;
     uint most; // photons to show
 };
-GPU_SIZE(PhotonViewParams, 84);
+GPU_SIZE(PhotonViewParams, 92);
 
 // Relative errors from kLeastError, dark, to 1, yellow, in even steps of the logarithm.
 GPU_CONST float kLeastError = 1e-3f;

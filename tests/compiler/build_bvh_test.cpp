@@ -355,7 +355,7 @@ TEST(BuildBvh, StoresTrianglesWithFlagsOnce)
     };
     const size_t count = crossingSticks(2000).triangles.size();
     EXPECT_EQ(stored(gpu::kTriangleAlpha), count);
-    EXPECT_GT(stored(0), count); // or the scene does not ask for splits
+    EXPECT_GT(stored(0), count); // otherwise the scene needs no splits
 }
 
 TEST(BuildBvh, StatesTheCostThatItsNodesHave)

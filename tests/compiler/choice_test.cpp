@@ -50,6 +50,25 @@ TEST(Choice, ASceneIsChosenByNameOrIndex)
     }
 }
 
+TEST(Choice, AFileWithoutScenesIsOneSceneOfAllItsNodes)
+{
+    GltfBuilder builder = offer();
+    builder.json.erase("scenes");
+    builder.json.erase("scene");
+    builder.json["nodes"].push_back({{"children", {0}}, {"translation", {0, 5, 0}}}); // so that node 0 is no root
+    const auto all = importChoice(builder, {});
+    ASSERT_TRUE(all) << all.error().message;
+    EXPECT_EQ(all->instances.size(), 2u);
+    EXPECT_EQ(all->scene.warnings.size(), 1u);
+    const auto chosen = importChoice(builder, {.scene = "day", .variant = ""});
+    ASSERT_FALSE(chosen);
+    EXPECT_EQ(chosen.error().code, ExitCode::kUsage);
+    builder.json["nodes"] = nlohmann::json::array();
+    const auto nothing = importChoice(builder, {});
+    ASSERT_FALSE(nothing);
+    EXPECT_EQ(nothing.error().code, ExitCode::kInvalid);
+}
+
 TEST(Choice, WithoutADefaultSceneTheFirstIsTakenAndAChoiceNeedsNoWarning)
 {
     GltfBuilder builder = offer();

@@ -9,7 +9,7 @@ namespace
 {
 constexpr double kPi = std::numbers::pi;
 
-/// A floor of `side`, seen from 1.5 sides above by one who looks down, with whatever else a test adds.
+/// A floor of `side`, seen from 1.5 sides above by a camera that points down, with whatever else a test adds.
 struct Room : GltfBuilder
 {
     explicit Room(float side) : side_(side)
@@ -106,7 +106,7 @@ TEST(LightNeed, OneHonestLampInADimRoomIsEnough)
     Room lamp(3);
     lamp.addQuad(lamp.glowing(1), 1.5f, 0.2f, 0, true); // 0.13 W
     EXPECT_FALSE(lamp.need().dark);
-    EXPECT_TRUE(lamp.need().dim); // and a sentence says so
+    EXPECT_TRUE(lamp.need().dim); // with a message
     Room candle(10);
     candle.addPoint(1, 3);
     EXPECT_FALSE(candle.need().dark);
@@ -124,7 +124,7 @@ TEST(LightNeed, ANarrowBeamIsItsAuthorsLightWhereverItGoes)
 
 TEST(LightNeed, ManySmallLightsAreAsOneThatIsAsLarge)
 {
-    // 18 x 18 tiles are 648 triangles, of which 256 are asked: each stands for two or three neighbours of a ceiling that
+    // 18 x 18 tiles are 648 triangles, of which 256 are sampled: each represents two or three neighbours of a ceiling that
     // is as far away as it is wide, so that distances within such a group differ by 1 / 18 and the mean by its square.
     Room tiles(2);
     const int glow = tiles.glowing(1);
@@ -156,7 +156,7 @@ TEST(LightNeed, WhereCamerasSeeNothingTheWholeSceneCounts)
     Room room(2);
     room.addPoint(5, 1);
     room.json["nodes"][1].erase("rotation");
-    room.json["nodes"][1]["translation"] = {0, 1, -50}; // looks away
+    room.json["nodes"][1]["translation"] = {0, 1, -50}; // points away
     EXPECT_FALSE(room.need().dark);
 }
 } // namespace

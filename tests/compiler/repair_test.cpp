@@ -1,4 +1,4 @@
-// One bad item is a warning: everything else is compiled, and the report says what stands in its place.
+// A damaged item is a warning: everything else is compiled, and the report names its replacement.
 #include "compiler/compile.h"
 #include "compiler/report.h"
 #include "tests/compiler/gltf_builder.h"

@@ -1,4 +1,4 @@
-// Normals that point against their triangles: the winding says where the front is, the normals follow.
+// Normals that point against their triangles: the winding defines the front, and the normals are flipped.
 #include "compiler/build_lights.h"
 #include "compiler/encode.h"
 #include "compiler/linear.h"

@@ -1,4 +1,4 @@
-// FORMAT.md says of every material field what the list in material_fields.h says.
+// The rows of FORMAT.md about material fields agree with the list in material_fields.h.
 #include "format/gpu_scene.h"
 
 #include <fmt/format.h>

@@ -45,32 +45,29 @@ void PrintTo(const ContentCase& c, std::ostream* out) { *out << c.name; }
 
 // clang-format off
 const ContentCase kContentCases[] = {
-    {"ChildBeforeParent", "chunk NODE: node 1 child 0 points to node 1: children must come after", [](auto& s) { s.bvh_nodes[1].child.x = 1; }},
-    {"ChildOutOfRange", "chunk NODE: node 0 child 1 points to node 2, but there are only 2", [](auto& s) { s.bvh_nodes[0].child.y = 2; }},
-    {"TwoParents", "chunk NODE: node 0 child 2 points to node 1, which already has a parent", [](auto& s) { s.bvh_nodes[0].child.z = 1; }},
-    {"NoParent", "chunk NODE: node 1 has no parent", [](auto& s) { s.bvh_nodes[0].child.y = s.bvh_nodes[0].child.x; }},
-    {"LeafOutOfRange", "chunk NODE: node 1 child 2 is a leaf over triangles 5 to 5", [](auto& s) { ++s.bvh_nodes[1].child.z; }},
-    {"LeafTooLong", "chunk NODE: node 1 child 2 is a leaf over triangles 4 to 5", [](auto& s) { s.bvh_nodes[1].child.z += 1u << gpu::kLeafCountShift; }},
-    {"BoundsNan", "chunk NODE: node 1 child 1 has bounds", [](auto& s) { s.bvh_nodes[1].min_y.y = kNan; }},
-    {"BoundsInfinite", "chunk NODE: node 0 child 0 has bounds", [](auto& s) { s.bvh_nodes[0].max_z.x = kInf; }},
-    {"BoundsUpsideDown", "chunk NODE: node 0 child 0 has bounds", [](auto& s) { s.bvh_nodes[0].min_x.x = 2; }},
-    {"AbsentChildWithBounds", "chunk NODE: node 0 child 2 is absent", [](auto& s) { s.bvh_nodes[0].min_x.z = s.bvh_nodes[0].max_x.z = 0; }},
-    {"NoNodes", "chunk NODE is missing", [](auto& s) { s.bvh_nodes.clear(); }},
-    {"NoTriangles", "chunk BTRI is missing", [](auto& s) { s.bvh_triangles.clear(); }},
-    {"VertexNan", "chunk BTRI: triangle 3 has a vertex that is not finite", [](auto& s) { s.bvh_triangles[3].v1.y = kNan; }},
-    {"VertexOutsideBounds", "chunk BTRI: triangle 2 lies outside the scene bounds", [](auto& s) { s.bvh_triangles[2].v2.x = 1.5f; }},
-    {"SurfaceOutOfRange", "chunk BTRI: triangle 4 refers to surface 5", [](auto& s) { s.bvh_triangles[4].triangle = 5; }},
-    {"MaterialOutOfRange", "chunk BTRI: triangle 0 refers to material 4", [](auto& s) { s.bvh_triangles[0].material = 4; }},
-    {"TriangleFlags", "chunk BTRI: triangle 0 has unknown flags", [](auto& s) { s.bvh_triangles[0].flags = 4; }},
-    {"AlphaOnOpaque", "chunk BTRI: triangle 0 is flagged for alpha", [](auto& s) { s.bvh_triangles[0].flags = gpu::kTriangleAlpha; }},
-    {"ThinOnSolid", "chunk BTRI: triangle 0 is flagged as thin", [](auto& s) { s.bvh_triangles[0].flags = gpu::kTriangleThin; }},
+    {"InnerNodeOutOfRange", "chunk NODE: node 1 child 3 is node 2, but there are only 2", [](auto& s) { s.nodes[1].child[3] = package::kInnerChild; }},
+    {"NoParent", "chunk NODE: node 1 has no parent", [](auto& s) { s.nodes[0].child[1] = package::kNoChild; }},
+    {"ChildKind", "chunk NODE: node 1 child 2 is of the unknown kind 9", [](auto& s) { s.nodes[1].child[2] = 9; }},
+    {"LeafTooLong", "chunk NODE: node 1 child 2 is a leaf over triangles 4 to 5, chunk LEAF has 5", [](auto& s) { s.nodes[1].child[2] = 2; }},
+    {"LeafTooShort", "chunk LEAF: 5 triangles, the leaves in chunk NODE hold 4", [](auto& s) { s.nodes[0].child[0] = 1; }},
+    {"BoundsInfinite", "chunk NODE: node 0 child 1 has bounds", [](auto& s) { *s.meta.bounds_max = {std::numeric_limits<float>::max(), 1, 1}; }},
+    {"BoundsUpsideDown", "chunk NODE: node 0 child 1 has bounds", [](auto& s) { s.nodes[0].low[2][1] = s.nodes[0].high[2][1] = 40000; }},
+    {"NoNodes", "chunk NODE is missing", [](auto& s) { s.nodes.clear(); }},
+    {"NoLeaves", "chunk LEAF is missing", [](auto& s) { s.leaf_triangles.clear(); }},
+    {"LeafTriangle", "chunk LEAF: entry 3 is triangle 5, chunk TRIS has 5", [](auto& s) { s.leaf_triangles[3] = 5; }},
+    {"VertexNan", "chunk VPOS: vertex 10 is not finite", [](auto& s) { s.positions[10].y = kNan; }},
+    {"VertexOutsideBounds", "chunk VPOS: vertex 8 lies outside the scene bounds", [](auto& s) { s.positions[8].x = 1.5f; }},
+    {"PositionCount", "chunk VPOS: 14 vertices, chunk VATT has 15", [](auto& s) { s.positions.pop_back(); }},
+    {"ExtrasCount", "chunk VEXT: 14 vertices, chunk VATT has 15", [](auto& s) { s.extras.pop_back(); }},
+    {"MaterialOutOfRange", "chunk TRIS: triangle 0 refers to material 4", [](auto& s) { s.triangles[0].material = 4; }},
+    {"AlphaOnOpaque", "chunk TRIS: triangle 0 is flagged for alpha", [](auto& s) { s.triangles[0].material |= gpu::kTriangleAlpha << package::kTriangleFlagsShift; }},
+    {"ThinOnSolid", "chunk TRIS: triangle 0 is flagged as thin", [](auto& s) { s.triangles[0].material |= gpu::kTriangleThin << package::kTriangleFlagsShift; }},
     {"HasAlpha", "chunk META: has_alpha", [](auto& s) { s.meta.has_alpha = false; }},
     {"HasThin", "chunk META: has_alpha or has_thin", [](auto& s) { s.meta.has_thin = false; }},
     {"TriangleVertex", "chunk TRIS: triangle 2 refers to vertex 15", [](auto& s) { s.triangles[2].vertices.y = 15; }},
-    {"TriangleLight", "chunk TRIS: triangle 0 refers to light 3", [](auto& s) { s.triangles[0].light = 3; }},
-    {"TriangleClaimsLight", "chunk TRIS: triangle 0 claims light 1", [](auto& s) { s.triangles[0].light = 1; }},
-    {"UvNan", "chunk VATT: vertex 7 has texture coordinates", [](auto& s) { s.vertex_attributes[7].uv1.y = kNan; }},
-    {"ColourInfinite", "chunk VATT: vertex 8 has a colour", [](auto& s) { s.vertex_attributes[8].color.y = 0x7c000000; }},
+    {"UvNan", "chunk VATT: vertex 7 has texture coordinates", [](auto& s) { s.vertices[7].uv0.y = kNan; }},
+    {"SecondUvNan", "chunk VEXT: vertex 7 has texture coordinates", [](auto& s) { s.extras[7].uv1.y = kNan; }},
+    {"ColourInfinite", "chunk VEXT: vertex 8 has a colour", [](auto& s) { s.extras[8].color.y = 0x7c000000; }},
     {"BaseColour", "chunk MATL: material 0 has base_color outside 0 to 1", [](auto& s) { s.materials[0].base_color.y = 1.5f; }},
     {"Roughness", "chunk MATL: material 2 has roughness outside 0 to 1", [](auto& s) { s.materials[2].roughness = -0.1f; }},
     {"Transmission", "chunk MATL: material 3 has transmission outside 0 to 1", [](auto& s) { s.materials[3].transmission = kNan; }},
@@ -107,8 +104,8 @@ const ContentCase kContentCases[] = {
     {"LightNan", "chunk LITE: light 0 has a position", [](auto& s) { s.lights[0].p0.x = kNan; }},
     {"LightNegative", "chunk LITE: light 0 has an emission", [](auto& s) { s.lights[0].emission.y = -1; }},
     {"LightDirection", "chunk LITE: light 0 has a direction", [](auto& s) { s.lights[0].kind = gpu::kLightSpot; s.lights[0].p1 = {1, 1, 1}; }},
-    {"LightTriangle", "chunk TRIS: triangle 1 claims light 1", [](auto& s) { s.lights[1].triangle = 9; }},
-    {"LightTriangleDisagrees", "chunk LITE: light 1 claims triangle 1, which names another", [](auto& s) { s.triangles[1].light = gpu::kNone; }},
+    {"LightTriangle", "chunk LITE: light 1 refers to triangle 9", [](auto& s) { s.lights[1].triangle = 9; }},
+    {"LightTriangleTwice", "chunk LITE: light 1 claims triangle 1, which is light 0 already", [](auto& s) { s.lights[0].kind = gpu::kLightTriangle; s.lights[0].triangle = 1; }},
     {"LightMaterial", "chunk LITE: light 1 refers to material 4", [](auto& s) { s.lights[1].material = 4; }},
     {"LightMaterialUntextured", "chunk LITE: light 1 names material 0", [](auto& s) { s.lights[1].material = 0; }},
     {"PointWithTriangle", "chunk LITE: light 0 is no triangle", [](auto& s) { s.lights[0].triangle = 0; }},
@@ -159,13 +156,9 @@ struct Content : testing::TestWithParam<ContentCase>
 /// A chain of nodes with three leaves beside each next node: needs 3 stack entries a level.
 void makeDeep(SamplePackage& sample, uint32_t levels)
 {
-    const gpu::BvhNode full = sample.bvh_nodes[1];
-    gpu::BvhNode inner = full; // bounds of four present children
-    inner.min_x.w = inner.min_y.w = inner.min_z.w = 0;
-    inner.max_x.w = inner.max_y.w = inner.max_z.w = 1;
-    sample.bvh_nodes.assign(levels, inner);
-    for (uint32_t i = 0; i < levels; ++i)
-        sample.bvh_nodes[i].child.w = i + 1 < levels ? i + 1 : full.child.x;
+    sample.nodes.assign(levels, {.low = {}, .high = {}, .child = {1, 1, 1, package::kInnerChild}});
+    sample.nodes.back().child[3] = 1;
+    sample.leaf_triangles.assign(3 * levels + 1, 0);
 }
 } // namespace
 
@@ -216,7 +209,7 @@ package::ChunkEntry& envr(std::vector<package::ChunkEntry>& table)
 
 // clang-format off
 const ShellCase kShellCases[] = {
-    {"NewerVersion", ExitCode::kUnsupported, "version 3.0", [](auto& h, auto&) { h.version_major = 3; }},
+    {"NewerVersion", ExitCode::kUnsupported, "version 4.0", [](auto& h, auto&) { h.version_major = 4; }},
     {"OlderVersion", ExitCode::kUnsupported, "compile it again", [](auto& h, auto&) { h.version_major = 1; }},
     {"HeaderReserved", ExitCode::kInvalid, "header's reserved", [](auto& h, auto&) { h.reserved = 1; }},
     {"NoChunks", ExitCode::kInvalid, "counts 0 chunks", [](auto& h, auto&) { h.chunk_count = 0; }},

@@ -67,7 +67,7 @@ TEST_F(PkgCommand, InfoPrintsJson)
     EXPECT_EQ(json["triangles"], 5);
     EXPECT_EQ(json["lights"]["triangle"], 1);
     EXPECT_EQ(json["cameras"][0]["name"], "front");
-    EXPECT_EQ(json["chunks"].size(), 13u);
+    EXPECT_EQ(json["chunks"].size(), 15u);
     EXPECT_EQ(json["file_bytes"], std::filesystem::file_size(folder.path() / "good.lumi"));
 }
 
@@ -139,7 +139,7 @@ TEST_F(PkgCommand, DiffIsSilentWhereNothingDiffersAndNamesWhatDoes)
     EXPECT_EQ(out + err, "");
     SamplePackage sample;
     sample.meta.provenance->options.push_back("--sun 1");
-    sample.vertex_attributes[0].uv0.x += 0.25f;
+    sample.vertices[0].uv0.x += 0.25f;
     ASSERT_TRUE(sample.write(folder.path() / "other.lumi"));
     EXPECT_EQ(run("diff good.lumi other.lumi"), 1);
     EXPECT_NE(out.find("+option --sun 1\n"), std::string::npos) << out;
@@ -174,7 +174,7 @@ TEST_F(PkgCommand, ExtractWritesThingsAsOtherProgramsReadThem)
     EXPECT_EQ(json["materials"].size(), package->materials().size());
 
     ASSERT_EQ(run("extract good.lumi VATT -o v.bin"), 0) << err;
-    EXPECT_EQ(std::filesystem::file_size(folder.path() / "v.bin"), package->vertexAttributes().size_bytes());
+    EXPECT_EQ(std::filesystem::file_size(folder.path() / "v.bin"), package->vertexAttributes().size() * sizeof(package::StoredVertex));
     ASSERT_EQ(run("extract good.lumi texture/0/0 -o t.png"), 0) << err;
     EXPECT_EQ(readText(folder.path() / "t.png").substr(1, 3), "PNG");
     ASSERT_EQ(run("extract good.lumi environment -o e.exr"), 0) << err;

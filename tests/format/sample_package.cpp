@@ -7,27 +7,15 @@
 
 #include <fstream>
 #include <iterator>
-#include <limits>
 
 namespace
 {
 constexpr uint32_t kFourByFour = 4 | 4 << 16; // texels
-constexpr float kEmptyLow = std::numeric_limits<float>::max();
-constexpr float kEmptyHigh = std::numeric_limits<float>::lowest();
 
-uint32_t leaf(uint32_t first, uint32_t count)
+/// All present children have the node's own box.
+package::StoredNode node(std::array<uint8_t, 4> child)
 {
-    return gpu::kLeafBit | (count - 1) << gpu::kLeafCountShift | first;
-}
-
-/// All present children share the box 0..1; absent ones come last.
-gpu::BvhNode node(gpu::uvec4 child)
-{
-    const auto low = [](uint32_t c) { return c == gpu::kNone ? kEmptyLow : 0.0f; };
-    const auto high = [](uint32_t c) { return c == gpu::kNone ? kEmptyHigh : 1.0f; };
-    const gpu::vec4 lows{low(child.x), low(child.y), low(child.z), low(child.w)};
-    const gpu::vec4 highs{high(child.x), high(child.y), high(child.z), high(child.w)};
-    return {lows, highs, lows, highs, lows, highs, child};
+    return {.low = {}, .high = {}, .child = child};
 }
 
 gpu::Material material(uint32_t flags)
@@ -88,7 +76,8 @@ void fillMeta(lumicut::fb::MetaT& meta)
 SamplePackage::SamplePackage()
 {
     fillMeta(meta);
-    bvh_nodes = {node({leaf(0, 2), 1, gpu::kNone, gpu::kNone}), node({leaf(2, 1), leaf(3, 1), leaf(4, 1), gpu::kNone})};
+    nodes = {node({2, package::kInnerChild, package::kNoChild, package::kNoChild}), node({1, 1, 1, package::kNoChild})};
+    leaf_triangles = {0, 1, 2, 3, 4};
     materials = {material(0), material(0), material(gpu::kMaterialAlphaMask), material(gpu::kMaterialThin)};
     materials[1].emission = {2, 2, 2};
     materials[1].emissive_texture = 0;
@@ -99,9 +88,10 @@ SamplePackage::SamplePackage()
     for (uint32_t i = 0; i < 5; ++i)
     {
         const float z = float(i) / 5;
-        bvh_triangles.push_back({{0, 0, z}, i, {1, 0, z}, material_of[i], {0, 1, z}, flags_of[i]});
-        triangles.push_back({{3 * i, 3 * i + 1, 3 * i + 2}, i == 1 ? 1 : gpu::kNone});
-        vertex_attributes.insert(vertex_attributes.end(), 3, {1, 2, {0, 0}, {1, 1}, {0x3c003c00, 0x3c003c00}});
+        triangles.push_back({{3 * i, 3 * i + 1, 3 * i + 2}, material_of[i] | flags_of[i] << package::kTriangleFlagsShift});
+        positions.insert(positions.end(), {{0, 0, z}, {1, 0, z}, {0, 1, z}});
+        vertices.insert(vertices.end(), 3, {1, 2, {0, 0}});
+        extras.insert(extras.end(), 3, {{1, 1}, {0x3c003c00, 0x3c003c00}});
     }
     texture_refs = {{0, 0, 0, 0, kFourByFour, {1, 0, 0}, {0, 1, 0}}, {0, 1, gpu::kSampleUv1, 0, kFourByFour, {1, 0, 0}, {0, 1, 0}}};
     texture_pages = {std::vector<std::byte>((16 + 4 + 1) * 2 * 4, std::byte{0x55})};
@@ -121,10 +111,12 @@ Result<std::vector<package::WrittenChunk>> SamplePackage::write(const std::files
     lumicut::fb::FinishMetaBuffer(builder, lumicut::fb::Meta::Pack(builder, &meta));
     std::vector<package::ChunkSource> chunks{
         {package::kMetaChunk, 0, std::as_bytes(std::span(builder.GetBufferPointer(), builder.GetSize()))},
-        {package::kBvhNodesChunk, 0, std::as_bytes(std::span(bvh_nodes))},
-        {package::kBvhTrianglesChunk, 0, std::as_bytes(std::span(bvh_triangles))},
+        {package::kBvhNodesChunk, 0, std::as_bytes(std::span(nodes))},
+        {package::kLeafTrianglesChunk, 0, std::as_bytes(std::span(leaf_triangles))},
         {package::kTrianglesChunk, 0, std::as_bytes(std::span(triangles))},
-        {package::kVertexAttributesChunk, 0, std::as_bytes(std::span(vertex_attributes))},
+        {package::kPositionsChunk, 0, std::as_bytes(std::span(positions))},
+        {package::kVertexAttributesChunk, 0, std::as_bytes(std::span(vertices))},
+        {package::kVertexExtrasChunk, 0, std::as_bytes(std::span(extras))},
         {package::kMaterialsChunk, 0, std::as_bytes(std::span(materials))},
         {package::kTextureRefsChunk, 0, std::as_bytes(std::span(texture_refs))},
         {package::kLightsChunk, 0, std::as_bytes(std::span(lights))},

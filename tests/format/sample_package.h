@@ -2,6 +2,7 @@
 #pragma once
 #include "format/package_read.h"
 #include "format/package_write.h"
+#include "format/stored_geometry.h"
 
 #include <cstddef>
 #include <filesystem>
@@ -11,10 +12,12 @@
 struct SamplePackage
 {
     lumicut::fb::MetaT meta;
-    std::vector<gpu::BvhNode> bvh_nodes;
-    std::vector<gpu::BvhTriangle> bvh_triangles;
-    std::vector<gpu::Triangle> triangles;
-    std::vector<gpu::VertexAttributes> vertex_attributes;
+    std::vector<package::StoredNode> nodes;
+    std::vector<uint32_t> leaf_triangles;
+    std::vector<package::StoredTriangle> triangles;
+    std::vector<gpu::vec3> positions;
+    std::vector<package::StoredVertex> vertices;
+    std::vector<package::VertexExtras> extras;
     std::vector<gpu::Material> materials;
     std::vector<gpu::TextureRef> texture_refs;
     std::vector<gpu::Light> lights;

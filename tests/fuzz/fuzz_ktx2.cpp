@@ -1,4 +1,4 @@
-// Whatever the bytes: reading a KTX2 texture ends in a sentence or in as many texels as it says.
+// Reading any bytes as a KTX2 texture gives an error or as many texels as the header states.
 #include "compiler/ktx2.h"
 #include "format/check.h"
 

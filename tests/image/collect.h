@@ -1,4 +1,4 @@
-// A sink that keeps the whole picture and what was said of it.
+// A sink that stores the whole picture and the notes about it.
 #pragma once
 #include "image/image.h"
 #include "image/picture.h"

@@ -66,7 +66,7 @@ TEST_F(ClosedForm, RectangleLightsAFloorByItsFormFactor)
 }
 
 /// Rays start 256 roundings off their surface: 0.5 mm at 30 m from the origin. That must not carry a shadow ray into
-/// the lamp it asks for. (What is left is the light half a millimetre higher; hence no heights beyond.)
+/// the lamp that it samples. (What is left is the light half a millimetre higher; hence no heights beyond.)
 TEST_F(ClosedForm, ALampCloseToAFloorLightsItAtAnyHeight)
 {
     constexpr float kGap = 0.1f;

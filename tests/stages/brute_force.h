@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-/// What exact arithmetic says of one ray and one triangle, with bounds on what the kernels' single precision may
+/// The exact result for one ray and one triangle, with bounds on what the kernels' single precision may
 /// differ.
 struct Meeting
 {

@@ -273,7 +273,7 @@ TEST_F(BsdfSampling, ThinRoughTransmissionMirrorsReflectionThroughTheWall)
     tests.expectAll();
 }
 
-/// The test sees a density that is wrong by little: by 3 % of roughness, by a layer that reflects a two-hundredth.
+/// The test detects small errors of the density: 3 % of roughness, a layer that reflects a two-hundredth.
 TEST_F(BsdfSampling, AWrongDensityIsFound)
 {
     const Lobes metal{.metallic = 1, .roughness = 0.5}, rougher{.metallic = 1, .roughness = 0.515};

@@ -1,4 +1,4 @@
-// What rays feel of the surface around the nodes of an illumination cut: light that would fall beside it is kept on it.
+// Coverage probe rays estimate the fraction of a cut node's disc that lies on the surface, so that no power is spread beside it.
 #include "tests/stages/cut_twin.h"
 #include "tests/stages/ray_test.h"
 

@@ -204,7 +204,7 @@ TEST_F(CutsAtAWall, LightNothingBehindIt)
         EXPECT_LE(floor.foreign, 0.005 * power);
         EXPECT_LE(0.2126 * foreign, 0.005 * 0.7152 * own);
         if (mode != CutMode::kLeaves)
-            continue; // so few nodes that what their own probes say of them differs by more than that
+            continue; // so few nodes that the noise of their own probe rays exceeds that
         EXPECT_LE(std::abs(difference), 4 * error);
         EXPECT_LE(error, 0.1 * own) << "too few rays to tell";
     }

@@ -110,7 +110,7 @@ TEST_F(Cuts, StandEqualPhotons)
     }
 }
 
-/// Each of a node's photons speaks for it as often as it has power.
+/// A node's direction is that of one of its photons, chosen with probability proportional to its power.
 TEST_F(Cuts, TellTheDirectionOfOnePhotonByPower)
 {
     constexpr uint32_t kPhotons = 6, kCuts = 100;

@@ -19,6 +19,7 @@ protected:
     {
         const auto path = builder_.compile();
         scene_ = load(path);
+        camera_ = camera;
         points_.emplace(device(), *scene_, path, camera, kWidth, kHeight);
         pixel_angle_ = camera.vertical_fov > 0 ? 2 * std::tan(camera.vertical_fov / 2) / kHeight : 0;
     }
@@ -37,20 +38,27 @@ protected:
 
     std::vector<gpu::vec3> filtered(const std::vector<gpu::vec3>& light, uint32_t passes)
     {
-        const Buffer radiance = upload("test.radiance", light);
-        const DenoiseStage stage(device(), *scene_, kPixels);
+        const Buffer input = upload("test.light", light);
+        const LightBuffers buffers(device(), kPixels);
+        SignalsStage signals(device(), *scene_, kPixels);
+        const DenoiseStage stage(device(), kPixels);
+        const FrameInfo frame{.camera = cameraParams(camera_, kWidth, kHeight)};
         submit(*scene_,
                [&](Recorder& rec)
                {
-                   stage.record(rec, {.points = points_->gpu->points,
-                                      .light = radiance,
-                                      .width = kWidth,
-                                      .height = kHeight,
-                                      .passes = passes,
-                                      .pixel_angle = float(pixel_angle_),
-                                      .glossy = false});
+                   buffers.clear(rec, gpu::kLightDirect | gpu::kLightGlossy);
+                   rec.copy(input, buffers.direct, kPixels * sizeof(gpu::vec3));
+                   const SignalBuffers made = signals.record(rec, frame, *points_->gpu, buffers, gpu::kLightDirect);
+                   const Buffer& filtered = stage.record(rec, {.signal = made.direct,
+                                                               .guides = made.guides,
+                                                               .width = kWidth,
+                                                               .height = kHeight,
+                                                               .passes = passes,
+                                                               .pixel_angle = float(pixel_angle_)});
+                   rec.clear(buffers.direct); // where nothing reflects, nothing is written
+                   signals.apply(rec, made.direct, filtered, buffers.direct, kPixels);
                });
-        return contents<gpu::vec3>(radiance, kPixels);
+        return contents<gpu::vec3>(buffers.direct, kPixels);
     }
 
     Double3 reflectanceAt(uint32_t pixel) const
@@ -61,6 +69,7 @@ protected:
 
     SceneBuilder builder_;
     std::unique_ptr<SceneGpu> scene_;
+    Camera camera_;
     std::optional<ShadingPoints> points_;
     double pixel_angle_ = 0; // radians
 };
@@ -98,7 +107,7 @@ protected:
     }
 };
 
-/// A pixel as the filter sees it, in double precision.
+/// A pixel as the filter reads it, in double precision.
 struct Seen
 {
     Double3 light, reflectance, normal;
@@ -321,7 +330,7 @@ TEST_F(Denoise, AveragesNoiseAsMuchAsItsWeightsSay)
             sum += got[y * kWidth + x].x, squares += double(got[y * kWidth + x].x) * got[y * kWidth + x].x;
     const double mean = sum / count, variance = squares / count - mean * mean;
     const double weights = 1 + 4 * std::exp2(-0.5) + 4 * 0.5, gain = (1 + 4 * 0.5 + 4 * 0.25) / (weights * weights);
-    // Neighbours share pixels: the variance is known as well as from a ninth as many numbers.
+    // Neighbours share pixels: the variance is as accurate as from a ninth as many independent values.
     EXPECT_NEAR(variance, gain / 12, 4 * std::sqrt(2.0 * 9 / count) * gain / 12);
     EXPECT_NEAR(mean, mean_before, 4 * std::sqrt(1.0 / 12 / kPixels));
 }
@@ -334,7 +343,7 @@ TEST_F(Denoise, LeavesShadowsWithoutNoiseSharp)
         if (i % kWidth >= kWidth / 2)
             light[i] = {2, 2, 2};
     const auto got = filtered(light, 3);
-    // The first pass, which does not know the noise yet, takes the pixels at the edge for noisy. Else a pixel three off
+    // The first pass has no noise estimate yet and treats the pixels at the edge as noisy. Otherwise a pixel three off
     // the edge would get two fifths of the other side's light, as from a square of 27 pixels.
     for (uint32_t i = 0; i < kPixels; ++i)
     {

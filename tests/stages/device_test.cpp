@@ -1,4 +1,4 @@
-// The choice of a device and the knobs of the command line: what is picked, and what the refusals say.
+// The choice of a device and the settings of the command line: results and error messages.
 #include "runtime/gpu/instance.h"
 #include "runtime/settings.h"
 #include "shaders/lib/terms.h"

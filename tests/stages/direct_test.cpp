@@ -13,7 +13,7 @@ TEST(LightGroups, PickEachLightByItsShareOfTheGroup)
     const std::vector<LightShare> lights{{gpu::kLightDirectional, 0.3f}, {gpu::kLightPoint, 0.125f},
                                          {gpu::kLightTriangle, 0.25f},   {gpu::kLightSpot, 0},
                                          {gpu::kLightPoint, 0.125f},     {gpu::kLightEnvironment, 0.2f}};
-    const std::vector<double> shares{0.3, 0.2, 0.5}; // of suns, skies and lamps
+    const std::vector<double> shares{0.3, 0.2, 0.5}; // of directional, environment and local lights
     const LightGroups result = groupLights(lights);
     ASSERT_EQ(result.groups.size(), 3u);
     std::vector<double> drawn(lights.size());

@@ -31,6 +31,10 @@ inline double dot(Double3 a, Double3 b)
 {
     return a.x * b.x + a.y * b.y + a.z * b.z;
 }
+inline Double3 cross(Double3 a, Double3 b)
+{
+    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
 inline double length2(Double3 v)
 {
     return dot(v, v);

@@ -1,4 +1,4 @@
-// The frame of global illumination as a whole: a furnace, equal bits, and scenes that ask for trouble.
+// The frame of global illumination as a whole: a furnace, equal bits, and degenerate scenes.
 #include "shaders/lib/terms.h"
 #include "tests/stages/gi_test.h"
 

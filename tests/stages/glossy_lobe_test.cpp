@@ -11,7 +11,7 @@ namespace
 {
 constexpr double kPi = std::numbers::pi;
 
-/// Allowed is what the fit leaves, as its header says.
+/// The tolerance is the error of the fit that its header states.
 TEST(LobeReflectance, IsTheDirectionalReflectance)
 {
     double worst = 0, worst_grazing = 0;

@@ -1,4 +1,4 @@
-// Guided emission: what it learns, and that the map has no watt more or less for it.
+// Photon guiding: the learned distribution, and that guiding does not change the power in the map.
 #include "runtime/stages/guide.h"
 #include "tests/stages/gi_test.h"
 #include "tests/stages/ray_test.h"
@@ -41,7 +41,7 @@ protected:
         submit(*scene_, [&](Recorder& rec) { guide_->reset(rec); });
     }
 
-    /// Rays from within the room end all over its walls: there light is wanted.
+    /// Rays from within the room end all over its walls, which gives these importance.
     void look()
     {
         Random random(3);
@@ -66,7 +66,7 @@ protected:
                });
     }
 
-    /// One round of photons, from which the guide learns.
+    /// One emission of photons, which trains the guide.
     PhotonStage::Output trace(uint32_t round)
     {
         std::optional<PhotonStage::Output> out;
@@ -85,7 +85,7 @@ protected:
     }
     std::vector<gpu::Photon> emit(uint32_t round) { return stored(trace(round)); }
 
-    /// Of each cell, by what was learned.
+    /// The learned probability of each cell.
     std::vector<double> probabilities() const
     {
         const auto distribution = contents<gpu::GuideDistribution>(guide_->distribution(), 1)[0];
@@ -130,11 +130,11 @@ TEST_F(Guides, SendPhotonsWhereLightIsWanted)
 TEST_F(Guides, ChangeNoPower)
 {
     look();
-    // What the sun brings, known where bounces are left out: its patch on the floor has 1 m^2.
+    // The sun's direct power, exact without bounces: its patch on the floor has 1 m^2.
     const auto direct = [](const gpu::Photon& p)
     { return isFloorOfRoom(p) && std::abs(p.position.x) < 0.5f && std::abs(p.position.z) < 0.5f; };
     constexpr uint32_t kRounds = 8,
-                       kBefore = 4; // until every cell of the hole is known: photons through others are few and heavy
+                       kBefore = 4; // until every cell of the hole is learned: photons through other cells are few and of high power
     for (uint32_t round = 0; round < kBefore; ++round)
         (void)emit(round);
     double patch = 0, patch2 = 0, field = 0, field2 = 0;

@@ -9,11 +9,6 @@ inline constexpr double kSqrtHalf = std::numbers::sqrt2 / 2;
 /// Of densities and powers: a few roundings of squares of distances and cosines.
 inline constexpr double kRounding = 1e-4;
 
-inline Double3 cross(Double3 a, Double3 b)
-{
-    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-
 /// A lamp of kWidth x kDepth metres that hangs kHeight over the origin and faces down.
 inline constexpr double kWidth = 0.8, kDepth = 0.5, kHeight = 2.5, kRadiance = 5;
 inline void addLamp(SceneBuilder& builder, const nlohmann::json& material)

@@ -1,4 +1,4 @@
-// glTF's dielectric BRDF, and the one by which Cycles' reference pictures stand in for it. Cycles' nodes do not see the
+// glTF's dielectric BRDF, and the one by which Cycles' reference pictures stand in for it. Cycles' nodes have no access to the
 // half vector: instead of F(V.H) its surfaces take F's mean over all light directions, a function of N.V. The
 // directional albedo is the same; what one small light contributes is not.
 #pragma once

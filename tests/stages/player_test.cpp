@@ -1,4 +1,4 @@
-// lumicut-play as its user meets it: what it says of bad input, what it leaves behind, what it renders.
+// lumicut-play as a program: error messages, files that it writes, pictures.
 #include "tests/tools/run_program.h"
 #include "image/read_exr.h"
 

@@ -69,7 +69,7 @@ const Lengths kLengths[]{{1, 0},
 class OfLength : public Primitives, public testing::WithParamInterface<std::tuple<Lengths, Workers>>
 {
 protected:
-    // A queue may overflow on the GPU: the count says more than there is room for.
+    // A queue may overflow on the GPU: the count then exceeds the capacity.
     static Lengths lengths() { return std::get<0>(GetParam()); }
     static Workers workers() { return std::get<1>(GetParam()); }
     static uint32_t used() { return std::min(lengths().count, lengths().max_count); }

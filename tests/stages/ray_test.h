@@ -1,4 +1,4 @@
-// Rays for tests: random ones, and what the one traversal says of them.
+// Rays for tests: random ones, and the traversal's results for them.
 #pragma once
 #include "runtime/camera.h"
 #include "runtime/stages/rays.h"

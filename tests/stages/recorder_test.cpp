@@ -1,5 +1,5 @@
 // The recorder's barriers, by chains of dispatches whose results are exact only in the order given, under
-// synchronization validation; and what it says to callers who bind the wrong things.
+// synchronization validation; and its messages about wrong bindings.
 #include "runtime/stages/rays.h"
 #include "shaders/gather/harmonics.h"
 #include "shaders/resolve/resolve.h"

@@ -117,7 +117,7 @@ Pictures renderBoth(const Device& device, const SceneGpu& scene, const Camera& c
 
 // ---- Comparing -----------------------------------------------------------------------------------------------------
 
-/// Makes both pictures black, hence equal, where `left_out` says so.
+/// Makes both pictures black, hence equal, where `left_out` is set.
 void blacken(Pictures& p, const std::vector<bool>& left_out)
 {
     for (size_t i = 0; i < p.variance.size(); ++i)

@@ -209,7 +209,7 @@ TEST_F(Measured, RaysAreCountedByScopeAndKind)
     renderer.record(rec, down_, settings, 1);
     rec.submitAndWait();
     const auto entries = tally.entries();
-    ASSERT_EQ(entries.size(), 2u); // no light with an extent: no rays look for one
+    ASSERT_EQ(entries.size(), 2u); // no light with an area: no BSDF-sampled rays
     EXPECT_EQ(entries[0].scope, "primary");
     EXPECT_FALSE(entries[0].any_hit);
     EXPECT_EQ(entries[0].ray_count, kWidth * kHeight);

@@ -1,11 +1,8 @@
 // What is kept from frame to frame under a moving camera, what ends it, and what it must not change.
+#include "tests/stages/gi_test.h"
 #include "tests/stages/same_picture.h"
-#include "tests/stages/shading_points.h"
 
-#include <bit>
 #include <cstring>
-#include <map>
-#include <set>
 
 namespace
 {
@@ -23,11 +20,6 @@ Camera movedBy(float right, float back = 0)
     Camera moved = kCamera;
     moved.position = kCamera.position + gpu::vec3{right, 0, back};
     return moved;
-}
-
-double variation(double alpha, Double3 x, Double3 n, Double3 center, Double3 normal)
-{
-    return alpha * length(x - center) + length(n - normal);
 }
 
 template <typename T>
@@ -107,6 +99,7 @@ protected:
     {
         Settings settings = smallSettings();
         settings.reuse_photons = photons;
+        settings.history_frames = settings.antialias_frames = 0; // what frames share beside light itself
         return settings;
     }
 

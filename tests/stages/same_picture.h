@@ -1,4 +1,4 @@
-// Whether two unbiased ways to a picture lead to the same one, told from several pictures of each.
+// Tests whether two unbiased ways of rendering give the same picture, from several pictures of each.
 #pragma once
 #include "format/gpu_types.h"
 #include "tools/compare/welch.h"
@@ -16,7 +16,7 @@ inline ImageF imageOf(uint32_t width, uint32_t height, const std::vector<gpu::ve
 }
 
 /// Expects two sets, each of pictures with seeds of their own, to differ by noise alone, in every tile and as a whole.
-/// @param largest_error that the ratio of their means may have: with more noise the comparison would say little
+/// @param largest_error that the ratio of their means may have: with more noise the comparison would be meaningless
 inline void expectSamePicture(const std::string& what, std::span<const ImageF> a, std::span<const ImageF> b,
                               double largest_error)
 {

@@ -198,7 +198,7 @@ TEST_F(SamplesTest, SpendTheirBudgetExactly)
 
 TEST_F(SamplesTest, AreNoMoreThanThereAreShadingPoints)
 {
-    // A camera at the floor's end: few pixels see anything.
+    // A camera at the floor's end: few pixels hit anything.
     Camera aside = kCamera;
     aside.forward = normalize({1, -0.25f, -0.3f});
     aside.up = normalize(cross(cross(aside.forward, {0, 1, 0}), aside.forward));

@@ -36,7 +36,7 @@ protected:
         return device().download<Draw>(draws, params.count);
     }
 
-    /// A scene that kernels bind and do not look at.
+    /// A scene that kernels bind and do not read.
     const SceneGpu& anyScene()
     {
         if (!any_scene_)

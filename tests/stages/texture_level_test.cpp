@@ -14,7 +14,7 @@ constexpr double kWallSide = 8; // metres
 constexpr double kTexel = kWallSide / kTexels;
 
 /// A wall of stripes a texel wide, black and white, which are even grey in every level but the finest: what contrast is
-/// left of them tells the level, if that is between 0 and 1.
+/// left of them gives the level, if that is between 0 and 1.
 class TextureLevel : public GiTest
 {
 protected:
@@ -29,7 +29,7 @@ protected:
                           with(lambert(1), {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", texture}}}}}})));
     }
 
-    /// Lightest minus darkest of what is seen of the stripes, as a share of white.
+    /// Lightest minus darkest of what is seen of the stripes, as a fraction of white.
     double contrast(const Camera& camera, uint32_t frame)
     {
         const auto scene = load(builder_.compile());

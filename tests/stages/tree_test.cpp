@@ -12,7 +12,7 @@ constexpr uint32_t kCells = 1024; // a side of the grid of Morton codes
 
 constexpr gpu::SceneInfo kCube{.bounds_min = {-1, -1, -1}, .bounds_max = {1, 1, 1}};
 
-/// A sphere in the middle of a cell of the scene's cube [-1, 1]^3, or a little off it: rounding has no say in its code.
+/// A sphere in the middle of a cell of the scene's cube [-1, 1]^3, or a little off it: its code does not depend on rounding.
 gpu::vec4 inCell(gpu::uvec3 cell, float radius = 0, float off = 0)
 {
     const auto at = [&](uint32_t c) { return (c + 0.5 + off) / kCells; };

@@ -119,16 +119,11 @@ LoadedScene TriangleScene::load(const Device& device) const
     for (const uint32_t m : data_.mesh.materials)
         flags.push_back(by_material[m]);
     const Bvh bvh = buildBvh(data_.mesh, flags);
-    std::vector<gpu::Triangle> triangles;
-    for (const gpu::uvec3& t : data_.mesh.triangles)
-        triangles.push_back({t, gpu::kNone});
     const std::vector<uint8_t> meta = encodeMeta(makeMeta({}, data_, bvh, lights, {}, nullptr));
-    const std::vector<package::ChunkSource> chunks{chunk(package::kMetaChunk, meta),
-                                                   chunk(package::kBvhNodesChunk, bvh.nodes),
-                                                   chunk(package::kBvhTrianglesChunk, bvh.triangles),
-                                                   chunk(package::kTrianglesChunk, triangles),
-                                                   chunk(package::kVertexAttributesChunk, data_.mesh.attributes),
-                                                   chunk(package::kMaterialsChunk, data_.materials)};
+    const package::StoredGeometry geometry = foldGeometry(data_.mesh, bvh);
+    std::vector<package::ChunkSource> chunks = geometry.chunks();
+    chunks.push_back(chunk(package::kMetaChunk, meta));
+    chunks.push_back(chunk(package::kMaterialsChunk, data_.materials));
     const TemporaryFolder folder;
     const auto written = package::write(folder / "scene.lumi", chunks, {});
     check(bool(written), "{}", written ? "" : written.error().message);

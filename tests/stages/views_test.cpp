@@ -1,4 +1,4 @@
-// Debug views: what each says of a stage's output, against that output.
+// Debug views against the output of the stage that each shows.
 #include "runtime/stages/views.h"
 #include "tests/stages/ray_test.h"
 #include "tests/stages/shading_points.h"
@@ -330,7 +330,7 @@ TEST_F(Views, ShowTheNearestNodeOfTheCut)
     std::map<Color, uint32_t> node_of;
     for (uint32_t pixel = 0; pixel < kPixels; ++pixel)
     {
-        if (!onFloor(pixel)) // elsewhere the geometric normal is not the one known here
+        if (!onFloor(pixel)) // elsewhere the geometric normal differs from the expected one
             continue;
         double best = 1e30, second = 1e30;
         uint32_t nearest = 0;

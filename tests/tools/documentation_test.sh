@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Manual pages and completions hold every option of their program, and the programs that read them understand them.
+# Manual pages and completions contain every option of their program, and man, bash, zsh and fish parse them.
 # documentation_test.sh PROGRAM...
 set -euo pipefail
 folder=$(mktemp -d)

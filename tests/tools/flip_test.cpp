@@ -1,6 +1,6 @@
 // FLIP. The authors publish mean errors for pairs of test images (0.159691 LDR, 0.283478 HDR), but the images could not
 // be had where this was written, so those two numbers are NOT checked here. Checked instead: closed forms where the
-// answer is known by hand, a slow twin written straight from the papers' formulas (two-dimensional kernels, double
+// answer is known by hand, a slow twin written directly from the papers' formulas (two-dimensional kernels, double
 // precision, colour matrices derived from the primaries), and properties every error measure must have.
 #include "tests/tools/random_image.h"
 #include "tools/compare/flip.h"

@@ -1,4 +1,4 @@
-// Runs one of the project's programs and keeps what it said.
+// Runs one of the project's programs and collects its output.
 #pragma once
 #include "tests/tools/temporary_folder.h"
 

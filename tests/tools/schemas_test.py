@@ -26,7 +26,7 @@ def check(name, text):
     jsonschema.Draft7Validator.check_schema(schema)
     jsonschema.validate(json.loads(text), schema)
     checked.add(name)
-    # A schema that takes anything would not tell: without its fields the document is refused.
+    # A schema that accepts anything would prove nothing: without its fields the document must be refused.
     for field in schema["required"]:
         broken = json.loads(text)
         del broken[field]
@@ -53,6 +53,8 @@ with tempfile.TemporaryDirectory() as name:
               run("lumicut-compare", "--welch", "0.exr", "1.exr", "--against", "1.exr", "0.exr", "--json"))
         check("lumicut-bench-rays-1", run("lumicut-bench", "rays", "cornell.lumi", "--size", "32x24", "--repeats", "1",
                                           "--json"))
+        check("lumicut-bench-motion-1", run("lumicut-bench", "motion", "cornell.lumi", "--size", "24x16", "--frames", "2",
+                                            "--warm-up", "1", "--spp", "1", "--mode", "direct", "--cache", "kept", "--json"))
     else:
         for report in ("plain.json", "full.json"):
             check("lumicut-compile-report-1", (folder / report).read_text())

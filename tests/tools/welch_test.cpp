@@ -45,7 +45,7 @@ TEST(Welch, GivesKnownValues)
     EXPECT_NEAR(welchP(std::vector<double>{0, 1}, std::vector<double>{2, 3}), 1 - t / std::sqrt(2 + t * t), 1e-12);
 }
 
-/// As many false alarms as the level says, to 4 standard deviations of a binomial count.
+/// The rate of false alarms is the level, to 4 standard deviations of a binomial count.
 TEST(Welch, RaisesFalseAlarmsAtTheStatedLevel)
 {
     std::mt19937 random(1);

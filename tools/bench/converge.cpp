@@ -1,7 +1,7 @@
 #include "tools/bench/converge.h"
 
 #include "runtime/renderer.h"
-#include "tools/bench/motion.h"
+#include "tools/bench/paths.h"
 #include "tools/compare/metrics.h"
 #include "image/read_exr.h"
 #include "image/write_image.h"
@@ -36,14 +36,6 @@ struct Convergence
     ImageF picture;      // the last one
 };
 
-ImageF pictureOf(const Renderer& renderer, const Device& device)
-{
-    ImageF image{renderer.width(), renderer.height(), {}};
-    for (const gpu::vec3& pixel : renderer.picture(device))
-        image.rgb.insert(image.rgb.end(), {pixel.x, pixel.y, pixel.z});
-    return image;
-}
-
 std::vector<Row> emptyRows(uint32_t frames)
 {
     std::vector<Row> rows;
@@ -74,7 +66,7 @@ Convergence measure(const OpenedPackage& opened, const ImageF& reference, const 
     {
         renderer.restart();
         for (int32_t frame = -int32_t(options.travel); frame < 0; ++frame)
-            render(movedCamera(opened.camera, opened.scene->info(), frame), seed, 1);
+            render(movedCamera(opened.camera, opened.scene->info(), float(frame)), seed, 1);
         uint32_t done = 0;
         double seconds = 0;
         for (Row& row : result.rows)
@@ -88,7 +80,6 @@ Convergence measure(const OpenedPackage& opened, const ImageF& reference, const 
             }
             seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
             ImageF picture = pictureOf(renderer, device);
-            blackenNonFinite(picture);
             row.addTo(1.0 / options.seeds, seconds, compareImages(reference, picture));
             result.picture = std::move(picture);
         }

@@ -1,4 +1,4 @@
-// How soon the picture of a standing camera comes near its reference.
+// Convergence of a static view to its reference.
 #pragma once
 #include "runtime/settings.h"
 #include "tools/bench/opened.h"
@@ -8,7 +8,7 @@ struct ConvergeBenchOptions : BenchOptions // width and height: the reference's
     std::filesystem::path reference; // .exr
     std::string mode = "gi";         // gi, reference
     std::filesystem::path output;    // .exr: the last run's last picture; empty: none
-    uint32_t frames = 1;             // looked at after 1, 2, 4, ... and all of them
+    uint32_t frames = 1;             // measured after 1, 2, 4, ... and all of them
     uint32_t seeds = 1;              // runs, over which errors and times are averaged
     uint32_t travel = 0;             // frames of a moving camera that come before each run's first and do not count
     bool stages = false;             // print the stages' times too

@@ -1,7 +1,7 @@
 #include "tools/bench/frame.h"
 
 #include "runtime/renderer.h"
-#include "tools/bench/motion.h"
+#include "tools/bench/paths.h"
 #include "tools/bench/rays.h"
 
 #include <nlohmann/json.hpp>
@@ -66,7 +66,7 @@ Measurement measure(const OpenedPackage& opened, const FrameBenchOptions& option
         const auto scope = rec.scope("frame");
         if (light)
             scene.setLight(rec, light->index, movedLight(light->light, scene.info(), int32_t(frame)));
-        renderer.record(rec, camera_moves ? movedCamera(opened.camera, scene.info(), int32_t(frame)) : opened.camera, options.settings, 0);
+        renderer.record(rec, camera_moves ? movedCamera(opened.camera, scene.info(), float(frame)) : opened.camera, options.settings, 0);
         renderer.display(rec, options.settings, false);
     };
     for (uint32_t frame = 0; frame < options.warm_up + options.frames; ++frame)
@@ -98,7 +98,7 @@ RayThroughput::Kind kindOf(const RayTally::Entry& rays)
                                       : RayThroughput::kDiffuse;
 }
 
-/// Milliseconds that the rays would take if nothing but tracing them at the measured throughput took any time.
+/// Milliseconds that tracing the rays alone would take at the measured throughput.
 double floorMs(const RayTally::Entry& rays, const RayThroughput& throughput)
 {
     return double(rays.ray_count) / throughput.megaraysPerSecond(kindOf(rays)) * 1e-3;

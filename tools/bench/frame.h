@@ -1,4 +1,4 @@
-// What a frame costs, stage by stage, while camera and light move.
+// The time of a frame by stage, with moving camera and light.
 #pragma once
 #include "runtime/settings.h"
 #include "tools/bench/opened.h"

@@ -37,8 +37,8 @@ struct ModeResult
 struct Truth
 {
     std::vector<double> irradiance; // as in ModeResult
-    double mean_error = 0;  // what of a mode's mean error is the truth's own, were the mode right
-    double ratio_error = 0; // standard error that it puts into ratios
+    double mean_error = 0;  // mean error that the truth's noise alone would cause
+    double ratio_error = 0; // standard error that it causes in ratios
 };
 
 /// @return false where the samples are not those of the frames before

@@ -1,5 +1,5 @@
-// The illumination cut against the photon map that it stands for, and against the truth: what a gather ray's lookup costs
-// and how far it is off.
+// Lookups in the illumination cut against density estimation in the whole photon map and against path tracing: time and
+// error.
 #pragma once
 #include "runtime/settings.h"
 #include "tools/bench/opened.h"

@@ -4,6 +4,7 @@
 #include "tools/bench/converge.h"
 #include "tools/bench/frame.h"
 #include "tools/bench/lookup.h"
+#include "tools/bench/motion.h"
 #include "tools/bench/primitives.h"
 #include "tools/bench/rays.h"
 
@@ -18,6 +19,7 @@ struct CommandLine
     FrameBenchOptions frame;
     ConvergeBenchOptions converge;
     LookupBenchOptions lookup;
+    MotionBenchOptions motion;
     PrimitiveBenchOptions primitives;
     std::string size = "1920x1080";
     std::string preset = "default";
@@ -82,6 +84,24 @@ void addPackageCommands(CLI::App& app, CommandLine& line)
         ->capture_default_str();
 }
 
+void addMotion(CLI::App& app, CommandLine& line)
+{
+    MotionBenchOptions& options = line.motion;
+    CLI::App* motion = addPackageCommand(app, "motion", "the picture while the camera moves: error, flicker, ghosts, times", options);
+    addSize(motion, line);
+    addSettings(motion, line);
+    motion->add_option("--path", options.path, "how the camera moves: sway, orbit, or a file with a camera path")->capture_default_str();
+    motion->add_option("--frames", options.frames, "frames that are judged")->check(CLI::Range(1, 100000))->capture_default_str();
+    motion->add_option("--fps", options.frames_per_second, "frames a second of the path")->check(CLI::Range(1e-3, 1e6))->capture_default_str();
+    motion->add_option("--warm-up", options.warm_up, "frames before them, on the same path")->check(CLI::Range(0, 100000))->capture_default_str();
+    motion->add_option("--spp", options.sample_count, "samples a pixel of the references")->check(CLI::Range(1, 1 << 20))->capture_default_str();
+    motion->add_option("--mode", options.mode, "what is judged")->check(CLI::IsMember({"gi", "direct", "reference"}))->capture_default_str();
+    motion->add_flag("--ghost,!--no-ghost", options.ghost, "what is left after all lights are off, which takes as long again; default yes");
+    motion->add_option("--seed", options.seed, "another number, other noise")->capture_default_str();
+    motion->add_option("--cache", options.cache, "folder that keeps references for the next time; default in the user's cache folder");
+    motion->add_option("--dump", options.dump, "folder for each frame, its reference and its FLIP map (.png)");
+}
+
 void addPrimitives(CLI::App& app, PrimitiveBenchOptions& options)
 {
     CLI::App* primitives = app.add_subcommand("primitives", "sort, scan, compaction, segmented reduction: GItems/s at several sizes");
@@ -106,7 +126,7 @@ Status readTexts(CommandLine& line)
         height < 1 || uint64_t(width) * height > 1u << 24)
         return Error{ExitCode::kUsage, fmt::format("--size {}: WIDTHxHEIGHT is expected, at most 2^24 pixels", line.size)};
     for (BenchOptions* options : {static_cast<BenchOptions*>(&line.rays), static_cast<BenchOptions*>(&line.frame),
-                                  static_cast<BenchOptions*>(&line.lookup)})
+                                  static_cast<BenchOptions*>(&line.lookup), static_cast<BenchOptions*>(&line.motion)})
     {
         options->width = width;
         options->height = height;
@@ -114,7 +134,8 @@ Status readTexts(CommandLine& line)
     const auto settings = makeSettings(line.preset, line.assignments);
     if (!settings)
         return settings.error();
-    line.frame.settings = line.converge.settings = line.lookup.settings = *settings;
+    line.frame.settings = line.converge.settings = line.lookup.settings = line.motion.settings = *settings;
+    line.motion.preset = line.preset;
     return Success{};
 }
 
@@ -133,6 +154,7 @@ int main(int argc, char** argv)
     addDocumentation(app);
     CommandLine line;
     addPackageCommands(app, line);
+    addMotion(app, line);
     addPrimitives(app, line.primitives);
     try
     {
@@ -152,6 +174,8 @@ int main(int argc, char** argv)
         return run(benchConverge(line.converge), line.converge.package);
     if (app.got_subcommand("lookup"))
         return run(benchLookup(line.lookup), line.lookup.package);
+    if (app.got_subcommand("motion"))
+        return run(benchMotion(line.motion), line.motion.package);
     if (app.got_subcommand("rays"))
         return run(benchRays(line.rays), line.rays.package);
     return run(benchPrimitives(line.primitives), "lumicut-bench");

@@ -1,11 +1,29 @@
-// How cameras and lights move in measurements.
+// The picture while the camera moves: how far it is from the truth, how much it flickers, what it remembers too long.
 #pragma once
-#include "runtime/camera.h"
+#include "runtime/renderer.h"
+#include "tools/bench/motion_path.h"
+#include "tools/bench/opened.h"
 
-/// The given view swaying: 5 degrees to either side, the eye on a circle of 1/400 of the scene's diagonal, 120 frames a
-/// round; no two successive frames see the same. At frame 0 it is the given view.
-Camera movedCamera(const Camera& camera, const gpu::SceneInfo& info, int32_t frame);
+struct MotionBenchOptions : BenchOptions
+{
+    std::string path = "sway"; // sway, orbit, or a file that CameraPath::load() reads
+    std::string mode = "gi";   // gi, direct, reference
+    std::string preset;        // that the settings come from, for the report
+    uint32_t frames = 60;      // judged
+    uint32_t warm_up = 8;      // before them, on the same path
+    double frames_per_second = 30;
+    uint32_t sample_count = 256; // a pixel, of the references
+    bool ghost = true;           // measure ghosts too
+    uint32_t seed = 0;           // another one, other noise
+    std::filesystem::path cache; // of references; empty: the user's cache folder, else the system's for temporary files
+    std::filesystem::path dump;  // for pictures of each frame; empty: none
+    Settings settings;
+};
 
-/// Directional: turned one degree a frame about the vertical, or about x where it shines straight down. Else moved on a
-/// circle of 1/200 of the scene's diagonal, three degrees a frame.
-gpu::Light movedLight(const gpu::Light& light, const gpu::SceneInfo& info, int32_t frame);
+/// Prints moving FLIP, flicker, ghosts and the stages' times, as text or schema "lumicut-bench-motion/1".
+Status benchMotion(const MotionBenchOptions& options);
+
+/// The seed of a frame. Frames before the first are negative.
+uint32_t frameSeed(const MotionBenchOptions& options, int32_t frame);
+
+Mode modeOf(const MotionBenchOptions& options);

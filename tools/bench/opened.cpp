@@ -1,5 +1,7 @@
 #include "tools/bench/opened.h"
 
+#include "tools/compare/metrics.h"
+
 #include <algorithm>
 
 Result<OpenedPackage> openPackage(const BenchOptions& options)
@@ -24,6 +26,15 @@ Result<OpenedPackage> openPackage(const BenchOptions& options)
         return scene.error();
     return OpenedPackage{
         .package = std::move(*package), .device = std::move(*device), .scene = std::move(*scene), .camera = *camera};
+}
+
+ImageF pictureOf(const Renderer& renderer, const Device& device)
+{
+    ImageF image{renderer.width(), renderer.height(), {}};
+    for (const gpu::vec3& pixel : renderer.picture(device))
+        image.rgb.insert(image.rgb.end(), {pixel.x, pixel.y, pixel.z});
+    blackenNonFinite(image);
+    return image;
 }
 
 double percentile(std::vector<double> values, double fraction)

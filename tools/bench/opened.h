@@ -1,8 +1,9 @@
-// What every measurement on a package begins with, and how the measurements are summed up.
+// Opening a package for a measurement, and statistics of measurements.
 #pragma once
 #include "runtime/camera.h"
 #include "runtime/gpu/recorder.h"
-#include "runtime/scene_gpu.h"
+#include "runtime/renderer.h"
+#include "image/image.h"
 
 #include <filesystem>
 
@@ -25,6 +26,9 @@ struct OpenedPackage
 };
 
 Result<OpenedPackage> openPackage(const BenchOptions& options);
+
+/// What the renderer shows, linear, rows from the top; NaN and infinities are black. Waits for the device.
+ImageF pictureOf(const Renderer& renderer, const Device& device);
 
 /// The value that `fraction` of the others do not exceed: 0.5 is the median. `values` must not be empty.
 double percentile(std::vector<double> values, double fraction);

@@ -1,4 +1,4 @@
-// Ray throughput: how many rays a second the traversal kernels do on a scene.
+// Ray throughput: rays a second of the traversal kernels on a scene.
 #pragma once
 #include "tools/bench/opened.h"
 

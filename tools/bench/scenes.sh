@@ -1,29 +1,16 @@
-# What the measuring scripts share: programs, packages and cached references. Sourced, never run.
+# What the scripts that compile and render share: programs, packages and cached references. Sourced, never run.
 # Wants `out`, the folder to write to. Everything that is not the result goes to stderr.
+
+. "$(dirname "${BASH_SOURCE[0]}")/options.sh"
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 shared=$root/../shared
 bin=${LUMICUT_BIN:-$root/build/release/bin}
 
-fail() {
-    echo "$(basename "$0"): error: $2" >&2
-    exit "$1"
-}
-
-# usage_of SCRIPT: its leading comment.
-usage_of() {
-    awk 'NR > 1 { if (!/^#/) exit; sub(/^# ?/, ""); print }' "$1"
-}
-
-# need_value OPTION COUNT: fails where nothing follows the option.
-need_value() {
-    (($2 >= 2)) || fail 1 "$1 needs a value (see --help)"
-}
-
 # Builds, unless LUMICUT_BIN names a folder with the programs.
 build_programs() {
     if [[ -z ${LUMICUT_BIN-} ]]; then
-        "$root/tools/build.sh" release lumicut-compile lumicut-play lumicut-scenes lumicut-compare lumicut-bench >&2
+        "$root/tools/build.sh" release lumicut-compile lumicut-play lumicut-scenes lumicut-compare lumicut-bench lumicut-sheet >&2
     fi
 }
 

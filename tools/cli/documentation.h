@@ -1,4 +1,4 @@
-// Manual pages and shell completions, made from a program's command line, so that they cannot say anything else.
+// Manual pages and shell completions, generated from a program's command line, so that they cannot disagree with it.
 #pragma once
 #include <CLI/CLI.hpp>
 
@@ -14,7 +14,7 @@ std::string manualPage(const CLI::App& app);
 /// @param shell bash, zsh or fish
 std::string completion(const CLI::App& app, const std::string& shell);
 
-/// What the two need to know of an option; hidden ones are left out.
+/// The data of an option for both; hidden options are left out.
 struct OptionText
 {
     std::vector<std::string> names;   // with their dashes; empty for a positional argument

@@ -64,7 +64,7 @@ std::string jsonText(const Report& report)
     return json.dump(2) + "\n";
 }
 
-/// One line for scripts, see README.md.
+/// One line for scripts, see tools/compare/README.md.
 std::string tsvText(const Report& report)
 {
     const Metrics& m = report.metrics;
@@ -135,25 +135,25 @@ int main(int argc, char** argv)
 {
     Options options;
     CLI::App app{
-        "Says how far the rendering TEST is from the rendering REFERENCE, or with --welch whether two sets of renderings "
-        "differ by more than noise. All are linear OpenEXR images of one "
+        "Measures the error of the rendering TEST against the rendering REFERENCE, or tests with --welch whether two sets of "
+        "renderings differ by more than noise. All are linear OpenEXR images of one "
         "size.\nExit codes: 0 done, 1 usage, 2 a file cannot be read or written, 3 not a matching image, "
         "4 out of memory, 5 unsupported image.",
         "lumicut-compare"};
     app.set_version_flag("--version", "lumicut-compare " LUMICUT_VERSION);
     addDocumentation(app);
-    app.add_option("REFERENCE", options.reference, "the image taken as right (.exr)");
-    app.add_option("TEST", options.test, "the image to judge (.exr)");
+    app.add_option("REFERENCE", options.reference, "the image taken as correct (.exr)");
+    app.add_option("TEST", options.test, "the image to measure (.exr)");
     app.add_option("--png", options.png, "write reference, test and signed difference side by side (.png)");
     app.add_flag("--flip-map", options.flip_panel, "add the HDR-FLIP error map to the picture");
     app.add_option("--exposure", options.exposure, "stops of exposure for the picture and LDR-FLIP [0]")
         ->check(CLI::Range(-64.0, 64.0));
-    app.add_option("--crop", options.crop, "look only at pixels X0 <= x < X1, Y0 <= y < Y1 (X0,Y0,X1,Y1)")
+    app.add_option("--crop", options.crop, "use only pixels X0 <= x < X1, Y0 <= y < Y1 (X0,Y0,X1,Y1)")
         ->delimiter(',')
         ->expected(4);
     addWelchOptions(app, options.welch);
     app.add_flag("--json", options.json, "print the result as JSON");
-    app.add_flag("--tsv", options.tsv, "print one line of tab-separated figures (see README.md)")->excludes("--json");
+    app.add_flag("--tsv", options.tsv, "print one line of tab-separated figures (see tools/compare/README.md)")->excludes("--json");
     try
     {
         app.parse(argc, argv);

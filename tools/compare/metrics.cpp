@@ -56,7 +56,7 @@ void setErrors(const ImageF& reference, const ImageF& test, Metrics& metrics)
     metrics.relmse = std::accumulate(cut, relative.end(), best) / double(relative.size());
 }
 
-/// Neighbouring pixels may err together, blocks hardly do: their spread gives an honest standard error.
+/// Errors of neighbouring pixels may be correlated, those of blocks hardly: the standard error is computed from blocks.
 void setBias(const ImageF& reference, const ImageF& test, Metrics& metrics)
 {
     const uint32_t columns = std::min(16u, reference.width);

@@ -1,10 +1,10 @@
-// Numbers that say how far a rendering is from its reference.
+// Error metrics of a rendering against its reference.
 #pragma once
 #include "image/image.h"
 
 #include <array>
 
-/// The constant of relMSE: keeps black pixels from counting without bound. (W/(m^2 sr))^2
+/// The constant of relMSE, which bounds the weight of black pixels. (W/(m^2 sr))^2
 inline constexpr double kRelMseEpsilon = 0.01;
 
 struct Metrics

@@ -50,6 +50,27 @@ Bytes flipColor(float error)
 
 } // namespace
 
+Picture exposedPicture(const ImageF& image, float scale)
+{
+    Picture picture{image.width, image.height, {}};
+    picture.rgb.reserve(image.rgb.size());
+    for (const float value : image.rgb)
+        picture.rgb.push_back(srgbByte(value * scale));
+    return picture;
+}
+
+Picture flipPicture(const FlipMap& flip, uint32_t width, uint32_t height)
+{
+    Picture picture{width, height, {}};
+    picture.rgb.reserve(3 * flip.error.size());
+    for (const float error : flip.error)
+    {
+        const Bytes color = flipColor(error);
+        picture.rgb.insert(picture.rgb.end(), color.begin(), color.end());
+    }
+    return picture;
+}
+
 Picture sideBySide(const ImageF& reference, const ImageF& test, float scale, const std::optional<FlipMap>& flip)
 {
     const uint32_t panel_count = flip ? 4 : 3;

@@ -9,7 +9,7 @@
 /// Prints the error as a message about `file`. @return the exit code
 int fail(const std::string& file, const Error& error);
 
-/// Reads images that all must have the size of the first, and crops them. What is wrong goes to stderr.
+/// Reads images that all must have the size of the first, and crops them. Errors are printed on stderr.
 /// @param crop X0, Y0, X1, Y1, the last two exclusive, or empty
 /// @param first_name what a message calls the first image
 /// @return nothing, or the exit code

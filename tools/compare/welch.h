@@ -1,11 +1,11 @@
-// Whether two ways of rendering give the same picture, told from several pictures of each.
+// Tests whether two ways of rendering give the same picture, from several pictures of each.
 #pragma once
 #include "image/image.h"
 
 #include <array>
 #include <span>
 
-/// Means that differ by less than this part of themselves are equal: what a sum of 64 floats may lose to rounding.
+/// Means with a smaller relative difference are equal: the rounding error of a sum of 64 floats.
 inline constexpr double kWelchRounding = 64 / 16777216.0;
 
 /// Welch's t-test (Welch 1947) of the mean of a tile, or of the whole picture, in one channel.

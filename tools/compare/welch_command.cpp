@@ -52,7 +52,7 @@ std::string jsonText(const WelchResult& r, const Sets& sets)
     return json.dump(2) + "\n";
 }
 
-/// One line for scripts, see README.md.
+/// One line for scripts, see tools/compare/README.md.
 std::string tsvText(const WelchResult& r, const Sets& sets)
 {
     return fmt::format("{}\t{:.6g}\t{:.6g}\t{}\t{}\t{:.6f}\t{:.6f}\t{:.6f}\t{:.6g}\t{:.6g}\t{:.6g}\t{}\n",

@@ -30,7 +30,7 @@ struct EntryRelease
 using Archive = std::unique_ptr<archive, ArchiveRelease>;
 using Entry = std::unique_ptr<archive_entry, EntryRelease>;
 
-/// An entry's bytes and what keeps them alive.
+/// An entry's bytes and their storage.
 struct Content
 {
     package::MappedFile file;

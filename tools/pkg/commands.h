@@ -13,10 +13,10 @@ enum class TextFormat
     kJson,
 };
 
-/// Prints what `package` holds to stdout.
+/// Prints the contents of `package` to stdout.
 ExitCode info(const std::filesystem::path& package, TextFormat format);
 
-/// Silent where all packages are valid, else one line on stderr for each that is not; the highest exit code wins.
+/// Prints nothing if all packages are valid, else one line on stderr for each invalid one. @return the highest exit code
 ExitCode validate(const std::vector<std::filesystem::path>& packages);
 
 /// Prints what differs between two packages: chunks by their hashes, counts, sizes, options.
@@ -38,7 +38,7 @@ struct BundleOptions
 /// Writes an archive with player, packages, launcher, libraries and licences: same input, same bytes.
 ExitCode bundle(const BundleOptions& options);
 
-/// Names come from files of others: without control characters, for the terminal.
+/// A name from an untrusted file without control characters, for the terminal.
 std::string printable(std::string string);
 
 /// "file: error: text" on stderr.

@@ -17,7 +17,7 @@ std::span<const uint8_t> asBytes(std::span<const std::byte> bytes)
     return {reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size()};
 }
 
-/// "NAME", "NAME/1" or "NAME/1/2".
+/// Parses "NAME", "NAME/1" or "NAME/1/2".
 struct Wanted
 {
     std::string name;

@@ -152,7 +152,7 @@ std::string joined(const Json& strings)
     return printable(all.empty() ? "-" : all);
 }
 
-/// What lengths in the package are in.
+/// The package's unit of length.
 std::string unitOf(const lumicut::fb::Meta& meta)
 {
     return meta.unit() == 1 ? "m" : "units";

@@ -1,4 +1,4 @@
-// The licence texts that must travel with a bundle.
+// The licence texts that a bundle must contain.
 #pragma once
 #include "tools/pkg/archive.h"
 

@@ -31,23 +31,23 @@ void declare(CLI::App& app, Arguments& arguments)
     addDocumentation(app);
 
     const std::map<std::string, TextFormat> formats{{"text", TextFormat::kText}, {"json", TextFormat::kJson}};
-    CLI::App* info_app = app.add_subcommand("info", "Print what a package holds");
+    CLI::App* info_app = app.add_subcommand("info", "Print the contents of a package");
     info_app->add_option("FILE", arguments.file, "Package (.lumi)")->required();
     info_app->add_option("--format", arguments.format, "text or json")
         ->transform(CLI::CheckedTransformer(formats, CLI::ignore_case))
         ->default_str("text");
 
-    CLI::App* validate_app = app.add_subcommand("validate", "Check packages; silent where all is well");
+    CLI::App* validate_app = app.add_subcommand("validate", "Check packages; print nothing if all are valid");
     validate_app->add_option("FILE", arguments.files, "Packages (.lumi)")->required();
 
-    CLI::App* diff_app = app.add_subcommand("diff", "Print what differs between two packages");
+    CLI::App* diff_app = app.add_subcommand("diff", "Print the differences between two packages");
     diff_app->add_option("A", arguments.file, "Package (.lumi)")->required();
     diff_app->add_option("B", arguments.other, "Package (.lumi)")->required();
     diff_app->add_option("--format", arguments.format, "text or json")
         ->transform(CLI::CheckedTransformer(formats, CLI::ignore_case))
         ->default_str("text");
 
-    CLI::App* extract_app = app.add_subcommand("extract", "Write one thing of a package to a file of its own");
+    CLI::App* extract_app = app.add_subcommand("extract", "Write one part of a package to a file");
     extract_app->add_option("FILE", arguments.file, "Package (.lumi)")->required();
     extract_app
         ->add_option("WHAT", arguments.what,
@@ -65,7 +65,7 @@ void declare(CLI::App& app, Arguments& arguments)
 
 int main(int argc, char** argv)
 {
-    CLI::App app("Looks into Lumicut packages, checks them, and bundles them with the player.", "lumicut-pkg");
+    CLI::App app("Inspects, checks and compares Lumicut packages, and bundles them with the player.", "lumicut-pkg");
     Arguments arguments;
     declare(app, arguments);
     try
@@ -74,7 +74,7 @@ int main(int argc, char** argv)
     }
     catch (const CLI::ParseError& error)
     {
-        const bool diff_asked = argc > 1 && std::string_view(argv[1]) == "diff"; // its 1 says something else
+        const bool diff_asked = argc > 1 && std::string_view(argv[1]) == "diff"; // its exit code 1 means "different"
         return app.exit(error) == 0 ? int(ExitCode::kOk) : diff_asked ? kDiffTrouble : int(ExitCode::kUsage);
     }
     if (app.got_subcommand("info"))

@@ -54,5 +54,5 @@ for argument; do
 done
 [ -n "$scene" ] && set -- "$scene" "$@"
 
-# For the player alone: nothing else on this machine should see our libraries.
+# For the player alone: no other program should load the bundled libraries.
 LD_LIBRARY_PATH=$here/lib${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH} exec "$here/bin/lumicut-play" "$@"

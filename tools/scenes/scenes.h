@@ -35,7 +35,7 @@ GltfWriter slotScene();
 /// Two closed rooms that share one sheet, the camera in the dim one; the other has a lamp 400 times as bright, or none.
 GltfWriter neighboursScene(bool bright_lamp);
 
-/// A closed room of one albedo with a small lamp: light that has bounced many times.
+/// A closed room of one albedo with a small lamp: many interreflections.
 GltfWriter brightScene(float albedo);
 
 /// A room with thick walls and a window in the sun, on a ground plane of `ground` metres side (0: none).
@@ -56,5 +56,5 @@ GltfWriter flippedScene(bool against);
 /// A floor in dim sun; 30 m above it, with or without, a lamp 2 mm over an opaque shield that hides it from the floor.
 GltfWriter shieldScene(bool lamp);
 
-/// About as many triangles as asked for, 1000 and more: rolling ground with boulders. Not among allScenes().
+/// About `triangles` triangles, at least 1000: rolling ground with boulders. Not among allScenes().
 GltfWriter terrainScene(uint32_t triangles);

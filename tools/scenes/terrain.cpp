@@ -1,4 +1,4 @@
-// A landscape of as many triangles as one asks for, to measure how the compiler's time and memory grow.
+// A landscape of a given number of triangles, to measure how the compiler's time and memory grow.
 #include "tools/scenes/rooms.h"
 #include "tools/scenes/scenes.h"
 

@@ -24,8 +24,8 @@ float sheenLambda(float cosine, float alpha)
     return exp(cosine < 0.5 ? sheenCurve(cosine, alpha) : 2.0 * sheenCurve(0.5, alpha) - sheenCurve(1.0 - cosine, alpha));
 }
 
-/// Directional albedo of the white lobe. Fitted to integrals by the midpoint rule, over roughness 0.07 to 1 and cosines from 0.005:
-/// within 0.022 everywhere. @param roughness perceptual
+/// Directional albedo of the white lobe before sheenGrazing(), 1 at most. Fitted to integrals by the midpoint rule, over roughness
+/// 0.07 to 1 and cosines from 0.005: within 0.022 everywhere. @param roughness perceptual
 float sheenAlbedo(float roughness, float cosine)
 {
     float r = max(roughness, kLeastSheenRoughness), inverse = 1.0 / r;
@@ -36,7 +36,8 @@ float sheenAlbedo(float roughness, float cosine)
 }
 
 /// At the last grazing angles the masking of thin lobes, a fit, lets more back than arrives: up to 2.6 times at roughness 0.07.
-float sheenGrazing(float roughness, float cosine) { return min(1.0, cosine / max(0.1 - roughness / 2.4, 1e-6)); }
+/// With this factor for both directions 0.98 at most come back.
+float sheenGrazing(float roughness, float cosine) { return min(1.0, cosine / max(0.115 - roughness / 2.4, 1e-6)); }
 
 /// The white lobe, 1/sr. @param wo, wi above the surface
 float sheenLobe(float roughness, vec3 wo, vec3 wi)

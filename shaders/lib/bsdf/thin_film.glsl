@@ -19,7 +19,8 @@ vec3 filmSensitivity(float difference, vec3 shift)
     return mat3(3.2404542, -0.9692660, 0.0556434, -1.5371385, 1.8760108, -0.2040259, -0.4985314, 0.0415560, 1.0572252) * xyz;
 }
 
-/// Reflectance of the film and its base, outside is air.
+/// Reflectance of the film and its base, outside is air. Along the normal it is within a tenth of the interference's swing, 4 times
+/// the product of both boundaries' amplitudes, of Airy's sum seen by the CIE curves (thickness 100 to 1200 nm, index 1.2 to 2.4).
 /// @param ior of the film, @param thickness nm, @param f0 of the base under air at normal incidence
 vec3 filmReflectance(float cosine, float ior, float thickness, vec3 f0)
 {

@@ -5,7 +5,7 @@
 #include "shaders/lib/random.glsl"
 #include "tests/shaders/draw/draw.h"
 
-// Pairs moved to where legs say that light comes from, for legs beyond number.
+// Pairs warped towards where light comes from according to the path segments (legs), in the limit of infinitely many.
 
 layout(local_size_x = kDrawGroupSize) in;
 layout(push_constant, scalar) uniform Params { DrawParams params; };

@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#include "shaders/lib/bsdf.glsl"
+#include "shaders/lib/path.glsl"
 #include "tests/shaders/draw/draw.h"
 #include "tests/shaders/draw/independent.glsl"
 
@@ -12,7 +12,7 @@ layout(push_constant, scalar) uniform Params { BsdfDrawParams params; };
 
 layout(set = 1, binding = 0, scalar) writeonly buffer Draws { BsdfDraw draws[]; };
 
-Bsdf bsdfOfParams()
+SurfaceMaterial materialOfParams()
 {
     SurfaceMaterial m;
     m.base_color = vec3(params.base_color);
@@ -33,10 +33,21 @@ Bsdf bsdfOfParams()
     m.iridescence = params.iridescence;
     m.iridescence_ior = params.film_ior;
     m.iridescence_thickness = params.film_thickness;
-    m.dispersion = 0.0;
+    m.dispersion = params.dispersion;
     m.diffuse_transmission = params.diffuse_transmission;
     m.diffuse_transmission_color = vec3(params.base_color);
-    return bsdfAt(m, params.front == 1u, vec3(0.0, 0.0, 1.0));
+    return m;
+}
+
+/// @param random in [0, 1): picks the channel of a material that disperses light
+Bsdf bsdfOfParams(float random)
+{
+    PathVertex v;
+    v.material = materialOfParams();
+    v.surface.front = params.front == 1u;
+    v.bsdf = bsdfAt(v.material, v.surface.front, params.clearcoat_normal);
+    disperse(v, vec3(1.0), random);
+    return v.bsdf;
 }
 
 /// Seen from the other side where wi lies there: the material is then taken for thin.
@@ -55,8 +66,8 @@ void main()
         return;
     Sampler s = independentSampler(params.seed, i);
     vec2 u = nextPair(s);
-    float choice = nextPair(s).x;
-    Bsdf b = bsdfOfParams();
+    vec2 choices = nextPair(s);
+    Bsdf b = bsdfOfParams(choices.y);
     if (params.what == kDrawVisibleNormals)
     {
         vec3 h = sampleVisibleNormal(params.wo, alphas(b), u);
@@ -69,6 +80,6 @@ void main()
         draws[i] = valueTowards(b, vec3(r * cos(phi), r * sin(phi), z));
         return;
     }
-    BsdfSample drawn = sampleBsdf(b, params.wo, choice, u);
+    BsdfSample drawn = sampleBsdf(b, params.wo, choices.x, u);
     draws[i] = BsdfDraw(drawn.wi, drawn.pdf, drawn.weight, 0.0);
 }

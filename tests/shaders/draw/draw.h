@@ -43,8 +43,10 @@ struct BsdfDrawParams
     float film_ior;
     float film_thickness; // nm
     float diffuse_transmission;
+    float dispersion;      // > 0: every draw stands for one channel
+    vec3 clearcoat_normal; // unit, local
 };
-GPU_SIZE(BsdfDrawParams, 92);
+GPU_SIZE(BsdfDrawParams, 108);
 
 struct DirectionDraw
 {

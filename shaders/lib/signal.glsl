@@ -1,25 +1,26 @@
 // Signals as numbers. Functions only.
-#ifndef DENOISE_SIGNAL_GLSL
-#define DENOISE_SIGNAL_GLSL
-#include "shaders/denoise/denoise.h"
+#ifndef LIB_SIGNAL_GLSL
+#define LIB_SIGNAL_GLSL
 #include "shaders/lib/math.glsl"
+#include "shaders/signals/signals.h"
 
 struct Signal
 {
     vec3 light;
     vec3 reflectance;
     float lobe;  // width
-    float error; // standard, of brightness()
+    float error; // standard, of brightness(); < 0: unknown
 };
 
+const float kLeastReflectance = 1e-4; // no light is lost where a lobe's fit says none, and no half is too small
 const float kLargestHalf = 65504.0; // infinity would spread
 
-DenoiseSignal packSignal(Signal s)
+LightSignal packSignal(Signal s)
 {
     float sum = s.light.r + s.light.g + s.light.b;
     vec3 parts = clamp(vec3(s.light.rg / max(sum, 1e-30), s.lobe), 0.0, 1.0);
     uvec3 bits = uvec3(parts * vec3(4095.0, 4095.0, 255.0) + 0.5);
-    return DenoiseSignal(sum, bits.x | bits.y << 12 | bits.z << 24,
+    return LightSignal(sum, bits.x | bits.y << 12 | bits.z << 24,
                          uvec2(packHalf2x16(min(s.reflectance.rg, kLargestHalf)),
                                packHalf2x16(min(vec2(s.reflectance.b, s.error), kLargestHalf))));
 }

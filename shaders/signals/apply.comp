@@ -1,14 +1,14 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#include "shaders/denoise/signal.glsl"
+#include "shaders/lib/signal.glsl"
 
-// Every pixel becomes what it shows of the light around it. One thread per pixel.
+// Every pixel becomes what it shows of the light around it and before. One thread per pixel.
 
 layout(local_size_x = kRaysGroupSize) in;
-layout(push_constant, scalar) uniform Params { DenoiseParams params; };
+layout(push_constant, scalar) uniform Params { SignalParams params; };
 
-layout(set = 1, binding = 0) uniform usamplerBuffer Signals;  // as prepared
+layout(set = 1, binding = 0) uniform usamplerBuffer Signals;  // as prepared: they have the pixel's own reflectance
 layout(set = 1, binding = 1) uniform usamplerBuffer Filtered;
 layout(set = 1, binding = 2, scalar) writeonly buffer Radiance { vec3 radiance[]; };
 

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-/// Asks for huge pages where `bytes` of untouched memory at `start` span any. Only advice.
+/// Advises the kernel to use huge pages where `bytes` of untouched memory at `start` span any.
 inline void preferHugePages(void* start, size_t bytes)
 {
     constexpr uintptr_t kHugePage = uintptr_t(2) << 20;

@@ -1,0 +1,35 @@
+// A frame's light as signals that filters and histories can read: with what it falls on and where that was seen before.
+#pragma once
+#include "runtime/frame/frame_info.h"
+#include "runtime/frame/light_buffers.h"
+#include "runtime/frame/surface_buffers.h"
+#include "runtime/scene_gpu.h"
+#include "shaders/signals/signals.h"
+
+struct SignalBuffers
+{
+    const Buffer& guides;      // gpu::SurfaceGuide[pixel_count], with a texel view
+    const Buffer& last_guides; // the same of the last record()
+    const Buffer& motions;     // gpu::Motion[pixel_count]
+    const Buffer& direct;      // gpu::LightSignal[pixel_count], with a texel view
+    const Buffer& glossy;      // likewise
+};
+
+class SignalsStage
+{
+public:
+    SignalsStage(const Device& device, const SceneGpu& scene, uint32_t max_pixels);
+
+    /// @param terms gpu::kLight* bits: of `light` that is there
+    SignalBuffers record(Recorder& rec, const FrameInfo& frame, const SurfaceBuffers& surface, const LightBuffers& light, uint32_t terms);
+    /// Turns a signal into light again. @param filtered the signal of `own` after filters, @param light vec3[point_count]
+    void apply(Recorder& rec, const Buffer& own, const Buffer& filtered, const Buffer& light, uint32_t point_count) const;
+
+    const Buffer& motions() const { return motions_; } // of the last record()
+
+private:
+    Kernel prepare_, apply_;
+    Buffer views_, motions_, direct_, glossy_;
+    std::array<Buffer, 2> guides_;
+    uint32_t now_ = 0; // of guides_
+};

@@ -1,0 +1,26 @@
+// Smooth edges from the frames before. Shared by runtime/stages/antialias.cpp and shaders/antialias/*.
+#ifndef SHADERS_ANTIALIAS_H
+#define SHADERS_ANTIALIAS_H
+#include "shaders/signals/signals.h"
+
+GPU_NAMESPACE_BEGIN
+
+struct AntialiasParams
+{
+    uint point_count;
+    uint width;       // of the picture, pixels
+    uint most_frames; // that a pixel may be the mean of
+};
+GPU_SIZE(AntialiasParams, 12);
+
+struct StandParams
+{
+    uint point_count;
+    float scale;       // 1 / the number of frames in the sum
+    float before;      // part that the moving picture still has, 0..1
+    float most_frames; // that counts
+};
+GPU_SIZE(StandParams, 16);
+
+GPU_NAMESPACE_END
+#endif

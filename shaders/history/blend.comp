@@ -1,0 +1,158 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "shaders/lib/history.glsl"
+#include "shaders/lib/signal.glsl"
+
+// Makes each term's light the mean of this frame's and of what the same surface showed in the frames before, found where the
+// motion says and taken only from pixels that saw that surface (Schied et al. 2017, "Spatiotemporal Variance-Guided Filtering",
+// 4.1). Light is remembered over reflectance, so that textures stay sharp. One thread per pixel.
+
+layout(local_size_x = kRaysGroupSize) in;
+layout(push_constant, scalar) uniform Params { HistoryParams params; };
+
+layout(set = 1, binding = 0, scalar) readonly buffer Motions { Motion motions[]; };
+layout(set = 1, binding = 1, scalar) readonly buffer Guides { SurfaceGuide guides[]; };
+layout(set = 1, binding = 2) uniform usamplerBuffer OldGuides;
+layout(set = 1, binding = 3) uniform usamplerBuffer OldHistory;
+layout(set = 1, binding = 4, scalar) writeonly buffer NewHistory { PixelHistory history[]; };
+layout(set = 1, binding = 5, scalar) buffer DirectSignals { uvec4 direct_signals[]; };
+layout(set = 1, binding = 6, scalar) buffer GlossySignals { uvec4 glossy_signals[]; };
+layout(set = 1, binding = 7, scalar) readonly buffer DiffusePoints { DiffusePoint diffuse_points[]; };
+layout(set = 1, binding = 8, scalar) buffer Indirect { vec3 indirect[]; };
+layout(set = 1, binding = 9, scalar) buffer Caustics { vec3 caustics[]; };
+
+const float kOffPlane = 2.0;   // pixels, off the surface's plane, at which another pixel's surface is another one
+const float kFarAlong = 32.0;  // pixels, along it: what a pixel covers of a surface seen at 2 degrees
+const float kSameFacing = 0.9; // cosine between smooth normals of one surface
+const float kLeastTap = 0.02;  // weights that sum to less are rounding
+const uint kKnownFrames = 4u;  // from so many on the spread of a memory says more of its error than its neighbours do
+
+// A mirror shows other things as the eye moves: the sharper the lobe, the fewer frames of it are of use. A lobe of width 1 turns
+// with the surface as diffuse light does.
+const float kSharpFrames = 4.0;
+
+struct Past
+{
+    Memory direct, indirect, glossy, caustics;
+};
+
+void addTap(inout Memory sum, uvec2 words, float weight)
+{
+    Memory m = unpackMemory(words);
+    sum.light += weight * m.light;
+    sum.frames += weight * m.frames;
+    sum.spread += weight * m.spread;
+}
+
+void normalizeBy(inout Memory m, float weights)
+{
+    m.light /= weights;
+    m.frames /= weights;
+    m.spread /= weights;
+}
+
+bool sameSurface(SurfaceGuide now, vec3 normal, uvec4 old, float pixel)
+{
+    vec3 d = uintBitsToFloat(old.xyz) - now.position;
+    float rounding = 1e-5 * maxComponent(abs(now.position)); // of positions far from the origin
+    return abs(dot(d, normal)) <= kOffPlane * pixel + rounding && dot(d, d) <= square(kFarAlong * pixel + rounding) &&
+           dot(octahedralToUnit(unpackSnorm4x8(old.w).xy), normal) >= kSameFacing;
+}
+
+/// @return false where none of the four pixels around where it was saw the surface
+bool recall(uint pixel, out Past past)
+{
+    past = Past(Memory(vec3(0.0), 0.0, 0.0), Memory(vec3(0.0), 0.0, 0.0), Memory(vec3(0.0), 0.0, 0.0), Memory(vec3(0.0), 0.0, 0.0));
+    Motion motion = motions[pixel];
+    if (params.has_previous == 0u || motion.from.x == kNoMotion)
+        return false;
+    ivec2 size = ivec2(params.width, params.point_count / params.width);
+    vec2 at = vec2(pixel % params.width, pixel / params.width) + motion.from;
+    ivec2 corner = ivec2(floor(at));
+    vec2 part = at - vec2(corner);
+    SurfaceGuide guide = guides[pixel];
+    vec3 normal = octahedralToUnit(unpackSnorm4x8(guide.normals).xy);
+    float footprint = params.pixel_side + params.pixel_angle * motion.distance;
+    float weights = 0.0;
+    for (int k = 0; k < 4; ++k)
+    {
+        ivec2 step_ = ivec2(k & 1, k >> 1), place = corner + step_;
+        if (any(lessThan(place, ivec2(0))) || any(greaterThanEqual(place, size)))
+            continue;
+        int old = place.y * size.x + place.x;
+        vec2 near = mix(1.0 - part, part, equal(step_, ivec2(1)));
+        float weight = near.x * near.y;
+        if (!(weight > 0.0) || !sameSurface(guide, normal, texelFetch(OldGuides, old), footprint))
+            continue;
+        uvec4 first = texelFetch(OldHistory, 2 * old), second = texelFetch(OldHistory, 2 * old + 1);
+        addTap(past.direct, first.xy, weight);
+        addTap(past.indirect, first.zw, weight);
+        addTap(past.glossy, second.xy, weight);
+        addTap(past.caustics, second.zw, weight);
+        weights += weight;
+    }
+    if (weights < kLeastTap)
+        return false;
+    normalizeBy(past.direct, weights);
+    normalizeBy(past.indirect, weights);
+    normalizeBy(past.glossy, weights);
+    normalizeBy(past.caustics, weights);
+    return true;
+}
+
+/// The mean of the past, of at most `most` frames, and of `light`.
+Memory remember(Memory past, vec3 light, float most)
+{
+    if (any(isnan(light)) || any(isinf(light)))
+        return past;
+    float frames = min(past.frames, most), part = 1.0 / (frames + 1.0);
+    vec3 mean = mix(past.light, light, part);
+    float square_ = mix(past.spread * square(luminance(past.light)), square(luminance(light)), part);
+    return Memory(mean, frames + 1.0, max(square_ / max(square(luminance(mean)), 1e-30), 1.0));
+}
+
+/// Standard error of the mean's brightness; < 0 where too few frames tell.
+float errorOf(Memory m)
+{
+    return m.frames < float(kKnownFrames) ? -1.0 : luminance(m.light) * sqrt((m.spread - 1.0) / m.frames);
+}
+
+Memory rememberSignal(inout uvec4 bits, Memory past, float most)
+{
+    Signal s = unpackSignal(bits);
+    if (s.lobe == 0.0)
+        return kNoMemory;
+    Memory m = remember(past, s.light / s.reflectance, most);
+    s.light = m.light * s.reflectance;
+    s.error = errorOf(m);
+    LightSignal packed = packSignal(s);
+    bits = uvec4(floatBitsToUint(packed.sum), packed.chroma, packed.reflectance);
+    return m;
+}
+
+Memory rememberDiffuse(inout vec3 light, vec3 reflectance, Memory past)
+{
+    Memory m = remember(past, light / reflectance, float(params.most_frames));
+    light = m.light * reflectance;
+    return m;
+}
+
+void main()
+{
+    uint pixel = gl_GlobalInvocationID.x;
+    if (pixel >= params.point_count)
+        return;
+    Past past;
+    if (!recall(pixel, past))
+        past = Past(kNoMemory, kNoMemory, kNoMemory, kNoMemory);
+    float most = float(params.most_frames);
+    uint random = hash(params.seed, pixel);
+    vec3 reflectance = max(diffuse_points[pixel].reflectance, vec3(kLeastReflectance));
+    float lobe = unpackSignal(glossy_signals[pixel]).lobe;
+    history[pixel] = PixelHistory(
+        packMemory(rememberSignal(direct_signals[pixel], past.direct, most), random),
+        packMemory(rememberDiffuse(indirect[pixel], reflectance, past.indirect), hash(random)),
+        packMemory(rememberSignal(glossy_signals[pixel], past.glossy, mix(min(kSharpFrames, most), most, lobe)), hash(random + 1u)),
+        packMemory(rememberDiffuse(caustics[pixel], reflectance, past.caustics), hash(random + 2u)));
+}

@@ -1,0 +1,38 @@
+// What pixels remember of the light of frames before. Shared by runtime/stages/history.cpp and shaders/history/*.
+#ifndef SHADERS_HISTORY_H
+#define SHADERS_HISTORY_H
+#include "shaders/signals/signals.h"
+
+GPU_NAMESPACE_BEGIN
+
+GPU_CONST uint kMostHistoryFrames = 63u; // that a HistoryLight can count
+
+struct HistoryLight // mean of the light over reflectance in the frames before
+{
+    uvec2 words; // three mantissas of 14 bits, exponent of 8, frames of 6, spread of 8; see history/blend.comp
+};
+GPU_SIZE(HistoryLight, 8);
+
+struct PixelHistory // by term; two texels
+{
+    HistoryLight direct;
+    HistoryLight indirect;
+    HistoryLight glossy;
+    HistoryLight caustics;
+};
+GPU_SIZE(PixelHistory, 32);
+
+struct HistoryParams
+{
+    uint point_count;
+    uint width;        // of the picture, pixels
+    uint most_frames;  // that a mean may stand for; the next one weighs 1 / (most_frames + 1)
+    uint has_previous; // 1: there are histories to go on from
+    uint seed;         // of rounding
+    float pixel_angle; // radians from a pixel to the next; of an orthographic camera 0
+    float pixel_side;  // metres, of an orthographic camera; else 0
+};
+GPU_SIZE(HistoryParams, 28);
+
+GPU_NAMESPACE_END
+#endif

@@ -1,0 +1,75 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "shaders/lib/path.glsl"
+#include "shaders/lib/signal.glsl"
+#include "shaders/lib/view.glsl"
+
+// Gathers what filters and histories ask of a pixel: where its surface is and faces, where that was seen in the last picture, the
+// light it has, and how much it would reflect. One thread per pixel.
+
+layout(local_size_x = kRaysGroupSize) in;
+layout(push_constant, scalar) uniform Params { SignalParams params; };
+
+layout(set = 1, binding = 0, scalar) readonly buffer Views { FrameViews views; };
+layout(set = 1, binding = 1, scalar) readonly buffer Points { ShadingPoint points[]; };
+layout(set = 1, binding = 2, scalar) readonly buffer Direct { vec3 direct[]; };
+layout(set = 1, binding = 3, scalar) readonly buffer Glossy { vec3 glossy[]; };
+layout(set = 1, binding = 4, scalar) writeonly buffer Guides { SurfaceGuide guides[]; };
+layout(set = 1, binding = 5, scalar) writeonly buffer Motions { Motion motions[]; };
+layout(set = 1, binding = 6, scalar) writeonly buffer DirectSignals { LightSignal direct_signals[]; };
+layout(set = 1, binding = 7, scalar) writeonly buffer GlossySignals { LightSignal glossy_signals[]; };
+
+/// A signal of unknown error.
+LightSignal signalOf(vec3 light, vec3 reflectance, float lobe)
+{
+    return packSignal(Signal(light, max(reflectance, vec3(kLeastReflectance)), max(lobe, 1.0 / 255.0), -1.0));
+}
+
+/// Where what the pixel shows was in the last picture. In mirrors and glass it is taken for the image behind them that a plane
+/// one would show.
+Motion motionOf(uint pixel, ShadingPoint point)
+{
+    CameraParams camera = views.now;
+    vec2 at = vec2(pixel % camera.width, pixel / camera.width) + camera.jitter;
+    Ray ray = cameraRay(camera, at, pixel);
+    float distance_ = kInfinity;
+    if (point.slot != kNone)
+        distance_ = point.depth == 0u || params.spread == 0.0 ? dot(point.position - ray.origin, ray.direction) + nearDistance(camera, ray)
+                                                               : point.width / params.spread;
+    if (params.has_previous == 0u)
+        return Motion(vec2(kNoMotion), distance_);
+    vec3 eye = ray.origin - nearDistance(camera, ray) * ray.direction;
+    vec2 last;
+    bool seen = distance_ < kInfinity ? imagePosition(views.last, eye + distance_ * ray.direction, last)
+                                      : imageDirection(views.last, ray.direction, last);
+    return Motion(seen ? last - at : vec2(kNoMotion), distance_);
+}
+
+void main()
+{
+    uint pixel = gl_GlobalInvocationID.x;
+    if (pixel >= params.point_count)
+        return;
+    ShadingPoint point = points[pixel];
+    LightSignal none = packSignal(Signal(vec3(0.0), vec3(0.0), 0.0, 0.0));
+    direct_signals[pixel] = none;
+    glossy_signals[pixel] = none;
+    vec3 smooth_normal = vec3(0.0, 0.0, 1.0), normal = smooth_normal;
+    if (point.slot != kNone)
+    {
+        PathVertex v = vertexAt(point);
+        float cosine = max(0.0, v.wo.z);
+        vec3 specular = hasGlossyLobe(v.bsdf) ? specularReflectance(v.bsdf, cosine) : vec3(0.0);
+        vec3 both = specular + diffuseReflectance(v.bsdf, cosine);
+        float share = luminance(specular) / max(luminance(both), 1e-20);
+        if ((params.terms & kLightDirect) != 0u)
+            direct_signals[pixel] = signalOf(direct[pixel], point.throughput * both, mix(1.0, sharpestAlpha(v.bsdf), share));
+        if ((params.terms & kLightGlossy) != 0u && hasGlossyLobe(v.bsdf)) // else it sends no ray
+            glossy_signals[pixel] = signalOf(glossy[pixel], point.throughput * specular, sharpestAlpha(v.bsdf));
+        smooth_normal = v.surface.smooth_normal;
+        normal = v.surface.normal;
+    }
+    guides[pixel] = SurfaceGuide(point.position, packSnorm4x8(vec4(unitToOctahedral(smooth_normal), unitToOctahedral(normal))));
+    motions[pixel] = motionOf(pixel, point);
+}
