@@ -41,6 +41,7 @@ TEST(Pipeline, WritesAPackageThatTheReaderAccepts)
     richScene().writeGlb(folder / "scene.glb");
     CompileOptions options{.input = folder / "scene.glb", .output = folder / "scene.lumi"};
     options.views = {{.name = "mine", .position = {0, 0, 5}, .vertical_fov = 1}};
+    options.default_light = DefaultLight::kOff; // the lamp shines on nothing
     const Result<CompileReport> report = compile(options);
     ASSERT_TRUE(report) << report.error().message;
     const auto package = package::Package::open(options.output);
