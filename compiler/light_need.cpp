@@ -153,6 +153,46 @@ double areaOf(const gpu::vec3& a, const gpu::vec3& b, const gpu::vec3& c)
     return length(cross(toDouble(b) - toDouble(a), toDouble(c) - toDouble(a))) / 2;
 }
 
+bool isTriangle(const gpu::Light& light)
+{
+    return light.kind == gpu::kLightTriangle || light.kind == gpu::kLightTriangleTwoSided;
+}
+
+/// Ray number `i` of an emissive triangle: from an even place on it, by the cosine (the sequence of Roberts 2018).
+/// @return whether it meets a surface
+bool meetsSurface(const gpu::Light& light, uint32_t i, const Caster& caster)
+{
+    const auto fraction = [&](double step) { return std::fmod(i * step + 0.5, 1.0); };
+    const Vec3d u = toDouble(light.p1) - toDouble(light.p0), v = toDouble(light.p2) - toDouble(light.p0);
+    const Vec3d front = unitOrZero(cross(u, v)), side = unitOrZero(u), up = cross(front, side);
+    const double x = fraction(0.8566748838), y = fraction(0.7338918566), r = std::sqrt(fraction(0.6287067210));
+    const double phi = 2 * kPi * fraction(0.5385972572), first = std::min(x, y), second = std::max(x, y) - first;
+    const double facing = light.kind == gpu::kLightTriangleTwoSided && i % 2 == 1 ? -1 : 1;
+    const Vec3d from = toDouble(light.p0) + u * first + v * second + front * (facing * 1e-4 * (length(u) + length(v)));
+    const Vec3d way = side * (r * std::cos(phi)) + up * (r * std::sin(phi)) + front * (facing * std::sqrt(1 - r * r));
+    return bool(caster.first(from, unitOrZero(way)));
+}
+
+/// Share of the power of emissive triangles that meets a surface again: in the open most of it is lost. By rays, evenly spaced over
+/// the power; 1 where no triangle emits.
+double keptShare(const LightTables& lights, const Caster& caster)
+{
+    constexpr uint32_t kRays = 1024;
+    double total = 0;
+    for (size_t i = 0; i < lights.lights.size(); ++i)
+        total += isTriangle(lights.lights[i]) ? lights.powers[i] : 0;
+    uint32_t rays = 0, kept = 0;
+    double sum = 0;
+    for (size_t i = 0; i < lights.lights.size() && total > 0; ++i)
+    {
+        if (!isTriangle(lights.lights[i]))
+            continue;
+        for (sum += lights.powers[i]; (rays + 0.5) / kRays < sum / total && rays < kRays; ++rays)
+            kept += meetsSurface(lights.lights[i], rays, caster) ? 1 : 0;
+    }
+    return rays == 0 ? 1 : double(kept) / rays;
+}
+
 /// Irradiance, were the power of all local lights spread over a sphere about them and the scene.
 double spreadPower(const WorldMesh& mesh, const LightTables& lights)
 {
@@ -221,8 +261,8 @@ std::vector<std::pair<size_t, double>> askedLights(const LightTables& lights)
     return asked;
 }
 
-/// The lower bound of what the brightest tenth of `points` reflects.
-double bestTenth(const std::vector<Point>& points, const LightTables& lights, double environment, double everywhere)
+/// The lower bound of what the brightest quarter of `points` reflects.
+double bestQuarter(const std::vector<Point>& points, const LightTables& lights, double environment, double everywhere)
 {
     const auto asked = askedLights(lights);
     std::vector<double> radiance;
@@ -233,9 +273,9 @@ double bestTenth(const std::vector<Point>& points, const LightTables& lights, do
             sum += weight * irradiance(lights, light, point, environment);
         radiance.push_back(kReflectance / kPi * sum);
     }
-    const auto tenth = radiance.begin() + ptrdiff_t(radiance.size() / 10);
-    std::nth_element(radiance.begin(), tenth, radiance.end(), std::greater<>());
-    return *tenth;
+    const auto quarter = radiance.begin() + ptrdiff_t(radiance.size() / 4);
+    std::nth_element(radiance.begin(), quarter, radiance.end(), std::greater<>());
+    return *quarter;
 }
 
 /// "its only light is ...": the strongest.
@@ -261,21 +301,21 @@ LightNeed judgeLight(const SceneData& scene, const Bvh& bvh, const LightTables& 
         return need;
     }
     const double environment = scene.environment ? luminance(averageRadiance(*scene.environment)) : 0;
-    const double everywhere = spreadPower(scene.mesh, lights);
     const Caster caster(bvh);
+    const double everywhere = spreadPower(scene.mesh, lights) * keptShare(lights, caster);
     bool seen = false;
     for (size_t c = 0; c < std::min(scene.cameras.size(), kMostCameras); ++c)
         if (const std::vector<Point> points = seenBy(scene.cameras[c], caster); !points.empty())
         {
-            need.radiance = std::max(need.radiance, bestTenth(points, lights, environment, everywhere));
+            need.radiance = std::max(need.radiance, bestQuarter(points, lights, environment, everywhere));
             seen = true;
         }
     if (!seen)
-        need.radiance = bestTenth(surfaces(scene.mesh), lights, environment, everywhere);
+        need.radiance = bestQuarter(surfaces(scene.mesh), lights, environment, everywhere);
     need.dark = need.radiance < kDark;
     need.dim = need.radiance < kDim;
     if (need.dim)
-        need.sentence = fmt::format("the scene's light ({}) reaches little of what is seen: but for a tenth, surfaces reflect "
+        need.sentence = fmt::format("the scene's light ({}) reaches little of what is seen: but for a quarter, surfaces reflect "
                                     "less than {:.2g} W/(m^2 sr), and pictures show nothing below {:.2g}",
                                     describe(scene, lights), need.radiance, kDark);
     return need;

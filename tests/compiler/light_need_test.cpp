@@ -101,6 +101,15 @@ TEST(LightNeed, ASurfaceThatGlowsByNoiseLeavesItDark)
     EXPECT_TRUE(room.need().dark);
 }
 
+TEST(LightNeed, AGlowThatLeavesTheSceneDoesNotLightIt)
+{
+    Room label(2), lamp(2); // the same panel, a sixteenth of the floor, shining away from it and onto it
+    label.addQuad(label.glowing(1), 0.01f, 0.5f);
+    lamp.addQuad(lamp.glowing(1), 1, 0.5f, 0, true);
+    EXPECT_TRUE(label.need().dark) << label.need().radiance;
+    EXPECT_FALSE(lamp.need().dim) << lamp.need().radiance;
+}
+
 TEST(LightNeed, OneHonestLampInADimRoomIsEnough)
 {
     Room lamp(3);
@@ -144,8 +153,9 @@ TEST(LightNeed, ManySmallLightsAreAsOneThatIsAsLarge)
     tiles.node({{"mesh", tiles.mesh({{"attributes", {{"POSITION", p}}}, {"indices", list}, {"material", glow}})}});
     tiles.json["nodes"][1]["translation"] = {0, 1.9, 0}; // the camera, below the ceiling
     // A square of side a at distance a above the floor's middle: its form factor there is 0.2394 (four quarters, each a
-    // rectangle over its corner with both ratios 1/2: 0.05986), a tenth of the floor about there has no less than 0.95 of it.
-    const double spread = kPi * 4 / (4 * kPi * 12);
+    // rectangle over its corner with both ratios 1/2: 0.05986), a quarter of the floor about there has no less than 0.91 of it.
+    // Of what leaves the ceiling the floor meets 0.1998 (equal squares opposite each other).
+    const double spread = 0.1998 * kPi * 4 / (4 * kPi * 12);
     const double most = 0.2394 + spread / kPi;
     EXPECT_LT(tiles.need().radiance, 1.01 * most);
     EXPECT_GT(tiles.need().radiance, 0.9 * most);

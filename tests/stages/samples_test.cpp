@@ -151,7 +151,7 @@ protected:
         .name = "",
         .position = {0.4f, 1.2f, 2.4f},
         .forward = normalize({-0.15f, -0.35f, -1}),
-        .up = normalize(cross(cross({-0.15f, -0.35f, -1}, {0, 1, 0}), {-0.15f, -0.35f, -1})),
+        .up = normalize(cross(cross(gpu::vec3{-0.15f, -0.35f, -1}, gpu::vec3{0, 1, 0}), gpu::vec3{-0.15f, -0.35f, -1})),
         .vertical_fov = 0.9f,
         .orthographic_height = 0};
     double alpha_ = 5; // of Eq. 2, per metre
