@@ -5,7 +5,7 @@
 #include <variant>
 #include <vector>
 
-/// Process exit codes, the same for every program of the project.
+/// Process exit codes, the same for every program of the project. 128 + N: signal N ended it, as a shell would say.
 enum class ExitCode
 {
     kOk = 0,

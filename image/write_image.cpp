@@ -7,8 +7,10 @@
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfOutputFile.h>
 #include <OpenEXR/ImfStdIO.h>
+#include <half.h>
 #include <stb_image_write.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cmath>
 #include <cstdio>
@@ -21,6 +23,32 @@ namespace
 Error cannotWrite(const char* what)
 {
     return {ExitCode::kIo, fmt::format("The file cannot be {}: {}.", what, std::strerror(errno))};
+}
+
+std::vector<Imath::half> toHalf(std::span<const float> values)
+{
+    std::vector<Imath::half> halves;
+    halves.reserve(values.size());
+    for (const float value : values)
+        halves.emplace_back(std::clamp(value, float(-HALF_MAX), float(HALF_MAX))); // leaves NaN as it is
+    return halves;
+}
+
+/// @param values of the layer in the type that is stored
+void insertLayer(const ExrLayer& layer, uint32_t width, const void* values, Imf::ChannelList& channels,
+                 Imf::FrameBuffer& source)
+{
+    const Imf::PixelType type = layer.half ? Imf::HALF : Imf::FLOAT;
+    const size_t bytes = layer.half ? sizeof(Imath::half) : sizeof(float);
+    const size_t x_stride = layer.channels.size() * bytes;
+    for (size_t i = 0; i < layer.channels.size(); ++i)
+    {
+        const std::string name = (layer.name.empty() ? "" : layer.name + ".") + layer.channels[i];
+        channels.insert(name, Imf::Channel(type));
+        // The library takes a char* for reading and writing alike; an output file only reads.
+        char* base = const_cast<char*>(static_cast<const char*>(values)) + i * bytes;
+        source.insert(name, Imf::Slice(type, base, x_stride, x_stride * width));
+    }
 }
 
 } // namespace
@@ -55,29 +83,28 @@ Status writeFile(const std::filesystem::path& path, std::span<const uint8_t> byt
     return Success{};
 }
 
-Status writeExr(const std::filesystem::path& path, const ImageF& image)
+Status writeExr(const std::filesystem::path& path, uint32_t width, uint32_t height, std::span<const ExrLayer> layers)
 {
-    check(image.width > 0 && image.height > 0 && image.rgb.size() == 3 * image.pixelCount(),
-          "{} x {} pixels with {} floats", image.width, image.height, image.rgb.size());
     try
     {
-        Imf::Header header(int(image.width), int(image.height));
+        Imf::Header header{int(width), int(height)};
         header.compression() = Imf::ZIP_COMPRESSION;
         Imf::FrameBuffer source;
-        const size_t x_stride = 3 * sizeof(float);
-        for (size_t i = 0; i < 3; ++i)
+        std::vector<std::vector<Imath::half>> halves; // what slices point to
+        for (const ExrLayer& layer : layers)
         {
-            const char name[2] = {"RGB"[i], '\0'};
-            header.channels().insert(name, Imf::Channel(Imf::FLOAT));
-            // The library takes a char* for reading and writing alike; an output file only reads.
-            char* base = reinterpret_cast<char*>(const_cast<float*>(image.rgb.data() + i));
-            source.insert(name, Imf::Slice(Imf::FLOAT, base, x_stride, x_stride * image.width));
+            check(layer.values.size() == layer.channels.size() * width * height, "layer '{}': {} x {} pixels with {} floats",
+                  layer.name, width, height, layer.values.size());
+            if (layer.half)
+                halves.push_back(toHalf(layer.values));
+            const void* values = layer.half ? static_cast<const void*>(halves.back().data()) : layer.values.data();
+            insertLayer(layer, width, values, header.channels(), source);
         }
         Imf::StdOSStream stream;
         {
             Imf::OutputFile file(stream, header);
             file.setFrameBuffer(source);
-            file.writePixels(int(image.height));
+            file.writePixels(int(height));
         } // its destructor writes the line offset table
         const std::string bytes = stream.str();
         return writeFile(path, {reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size()});
@@ -86,6 +113,13 @@ Status writeExr(const std::filesystem::path& path, const ImageF& image)
     {
         return Error{ExitCode::kDevice, fmt::format("The image cannot be encoded as OpenEXR: {}.", problem.what())};
     }
+}
+
+Status writeExr(const std::filesystem::path& path, const ImageF& image)
+{
+    check(image.width > 0 && image.height > 0, "{} x {} pixels", image.width, image.height);
+    const ExrLayer layer{.name = "", .channels = "RGB", .values = image.rgb};
+    return writeExr(path, image.width, image.height, {&layer, 1});
 }
 
 std::vector<uint8_t> encodePng(uint32_t width, uint32_t height, uint32_t channel_count, std::span<const uint8_t> texels)

@@ -10,7 +10,19 @@
 /// Errors: kIo with the system's reason; the temporary file is gone then.
 Status writeFile(const std::filesystem::path& path, std::span<const uint8_t> bytes);
 
-/// 32-bit float channels R, G, B, ZIP compression. The same image gives the same bytes.
+/// Channels of an OpenEXR picture that belong together.
+struct ExrLayer
+{
+    std::string name;              // "direct" has channels direct.R, ...; "" is the picture itself and has R, ...
+    std::string channels;          // a letter each: "RGB", "XYZ", "Z"
+    std::span<const float> values; // [channels * width * height], those of a pixel together, row 0 on top
+    bool half = false;             // stored as 16-bit floats, to the largest of which larger values are clamped
+};
+
+/// ZIP compression. The same layers give the same bytes, in whatever order: channels are sorted by name.
+Status writeExr(const std::filesystem::path& path, uint32_t width, uint32_t height, std::span<const ExrLayer> layers);
+
+/// One layer: 32-bit float channels R, G, B.
 Status writeExr(const std::filesystem::path& path, const ImageF& image);
 
 /// `texels`: uint8_t[channel_count * width * height], row 0 on top, sRGB-encoded colour as PNG readers expect.

@@ -44,13 +44,12 @@ struct Progress
     }
 };
 
-/// Of the parabola through a key and its two neighbours, at that key; 0 where it is the same as one of them.
-/// @param before, after changes from the neighbour before and to the one after; h_before, h_after seconds
-Vec3d slope(const Vec3d& before, double h_before, const Vec3d& after, double h_after)
+/// At a key, the mean speed from the one before to the one after; 0 where it is the same as one of them. (The slope of the
+/// parabola through all three would be nearer to even acceleration, but carries a short, fast move far into a long, slow one.)
+/// @param before, after changes from the key before and to the one after, over `seconds` in all
+Vec3d slope(const Vec3d& before, const Vec3d& after, double seconds)
 {
-    if (before == Vec3d{} || after == Vec3d{})
-        return {};
-    return (before * (h_after / h_before) + after * (h_before / h_after)) * (1 / (h_before + h_after));
+    return before == Vec3d{} || after == Vec3d{} ? Vec3d{} : (before + after) * (1 / seconds);
 }
 
 /// Steps from key `i` to the next. `change(j)`: from key j to the next, of what moves.
@@ -61,8 +60,8 @@ Steps steps(const std::vector<CameraKey>& keys, size_t i, const Change& change)
     const Vec3d here = change(i);
     const Vec3d mean = here * (1 / h(i)); // at the path's ends
     return {.h = h(i),
-            .slope_in = i > 0 ? slope(change(i - 1), h(i - 1), here, h(i)) : mean,
-            .slope_out = i + 2 < keys.size() ? slope(here, h(i), change(i + 1), h(i + 1)) : mean,
+            .slope_in = i > 0 ? slope(change(i - 1), here, h(i - 1) + h(i)) : mean,
+            .slope_out = i + 2 < keys.size() ? slope(here, change(i + 1), h(i) + h(i + 1)) : mean,
             .change = here};
 }
 

@@ -27,8 +27,8 @@ public:
     /// @param keys at least one, in the order of their times, kLeastStep or more apart; cameras as a package has them
     explicit CameraPath(std::vector<CameraKey> keys);
 
-    /// Position and orientation by cubic Hermite curves with the slope of the parabola through a key and its neighbours
-    /// (Catmull and Rom's where keys are evenly spaced): even motion stays even, and speeds do not jump. Where a key is
+    /// Position and orientation by cubic Hermite curves whose speed at a key is the mean from the key before to the key
+    /// after, as Catmull and Rom's: even motion stays even however keys are spaced, and speeds do not jump. Where a key is
     /// as the one before or after it, the camera rests. Fields of view stay within those of the two keys around.
     /// Between a perspective and an orthographic key the projection is that of the earlier.
     /// Before the first key and after the last the camera is theirs, to the last bit.

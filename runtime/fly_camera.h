@@ -9,6 +9,8 @@ struct FlyInput
     float yaw = 0, pitch = 0;             // radians, positive: to the left, upwards
     float faster = 0;                     // notches of the wheel
     bool fast = false;                    // for this frame only
+
+    bool moves() const { return right != 0 || up != 0 || forward != 0 || yaw != 0 || pitch != 0; }
 };
 
 class FlyCamera

@@ -1,31 +1,27 @@
 #include "runtime/headless.h"
 
-#include "runtime/opened_scene.h"
+#include "runtime/interruption.h"
 
 #include <algorithm>
 
-namespace
+bool renderSamples(Recorder& rec, Renderer& renderer, const OpenedScene& opened, const Camera& camera, uint32_t seed,
+                   uint32_t sample_count, Statistics& statistics)
 {
-/// Renders all samples; at most `max_batch` a submission.
-void renderSamples(const PlayerOptions& options, Renderer& renderer, const OpenedScene& opened, Statistics& statistics)
-{
-    Recorder rec(*opened.device);
-    uint32_t left = options.sample_count > 0 ? options.sample_count : std::max(options.frame_count, 1u);
-    while (left > 0)
+    while (sample_count > 0 && interruption() == 0)
     {
-        const uint32_t count = options.mode == Mode::kReference ? std::min(left, renderer.maxBatch()) : 1;
+        const uint32_t batch = std::min(sample_count, renderer.maxBatch());
         rec.begin(opened.scene->descriptorSet());
         {
             const auto scope = rec.scope("frame");
-            renderer.record(rec, opened.camera, opened.settings, options.seed, count);
+            renderer.record(rec, camera, opened.settings, seed, batch);
         }
         if (statistics.frames.empty())
             statistics.first_submit_ms = statistics.elapsedMs();
         statistics.addFrame(rec.submitAndWait());
-        left -= count;
+        sample_count -= batch;
     }
+    return sample_count == 0;
 }
-} // namespace
 
 Status playHeadless(const PlayerOptions& options)
 {
@@ -37,6 +33,8 @@ Status playHeadless(const PlayerOptions& options)
     if (const Status status = makeRenderer(renderer, *opened, options.mode, options.width, options.height, opened->settings); !status)
         return status;
     statistics.pipeline_ms = opened->device->pipelineMs();
-    renderSamples(options, *renderer, *opened, statistics);
+    Recorder rec(*opened->device);
+    const uint32_t sample_count = options.sample_count > 0 ? options.sample_count : std::max(options.frame_count, 1u);
+    renderSamples(rec, *renderer, *opened, opened->camera, options.seed, sample_count, statistics);
     return writeResults(options, *opened, *renderer, opened->settings, statistics);
 }

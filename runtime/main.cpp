@@ -4,8 +4,12 @@
 #include "runtime/capture.h"
 #include "runtime/headless.h"
 #include "runtime/opened_scene.h"
+#include "runtime/sequence.h"
 #include "runtime/windowed.h"
 #undef check
+
+#include <algorithm>
+#include <charconv>
 
 namespace
 {
@@ -38,6 +42,55 @@ Status parseSize(const std::string& text, PlayerOptions& options)
     return Success{};
 }
 
+/// "N", a count, or "A-B", of a sequence.
+Status parseFrames(const std::string& text, PlayerOptions& options)
+{
+    constexpr uint32_t kMost = 9999999; // of a sequence: more files than that no folder should hold
+    const auto number = [&](size_t begin, size_t end) -> std::optional<uint32_t>
+    {
+        uint32_t value = 0;
+        const auto [stop, error] = std::from_chars(text.data() + begin, text.data() + end, value);
+        return error == std::errc() && stop == text.data() + end ? std::optional(value) : std::nullopt;
+    };
+    if (const auto count = number(0, text.size()); count && *count > 0)
+    {
+        options.frame_count = *count;
+        return Success{};
+    }
+    const size_t dash = text.find('-');
+    const auto first = dash == std::string::npos ? std::nullopt : number(0, dash);
+    const auto last = first ? number(dash + 1, text.size()) : std::nullopt;
+    if (!last || *last > kMost)
+        return Error{ExitCode::kUsage,
+                     fmt::format("--frames: '{}' is neither a count, 1 or more, nor a range such as 0-239, up to {}", text, kMost)};
+    if (*last < *first)
+        return Error{ExitCode::kUsage, fmt::format("--frames: the last frame of {} comes before the first", text)};
+    options.sequence = FrameRange{*first, *last};
+    return Success{};
+}
+
+/// What belongs to paths and sequences. @param given of the options that sequences alone have, the first on the command line
+Status checkSequence(const PlayerOptions& options, const std::string& given)
+{
+    const auto usage = [](std::string sentence) { return Error{ExitCode::kUsage, std::move(sentence)}; };
+    if (!options.path.empty() && !options.camera.empty())
+        return usage("--path and --camera both say where the camera is; give one");
+    if (!options.sequence && !given.empty())
+        return usage(fmt::format("{} is for sequences: --headless --path FILE --frames A-B", given));
+    if (options.headless && !options.sequence && !options.path.empty())
+        return usage("--path with --headless needs the frames to render: --frames A-B");
+    if (!options.sequence)
+        return Success{};
+    if (!options.headless)
+        return usage("a range of --frames is rendered with --headless; in a window --frames is a count");
+    if (options.path.empty())
+        return usage("a range of --frames follows a camera path; give --path FILE, or a count");
+    if (options.output.empty())
+        return usage("a range of --frames needs files to go to: --output frame-%04d.exr or .png");
+    const auto files = FrameFiles::parse(options.output);
+    return files ? Status(Success{}) : files.error();
+}
+
 /// Checks that need no work.
 Status checkOptions(const PlayerOptions& options)
 {
@@ -51,7 +104,7 @@ Status checkOptions(const PlayerOptions& options)
             return Error{ExitCode::kIo, fmt::format("there is no folder {} to write to", folder.string()), path.string()};
     }
     if (options.frame_count > 0 && options.sample_count > 0)
-        return Error{ExitCode::kUsage, "--frames and --spp both say how much to render; give one"};
+        return Error{ExitCode::kUsage, "a count of --frames and --spp both say how much to render; give one"};
     const auto settings = makeSettings(options.preset.empty() ? "default" : options.preset, options.assignments);
     if (!settings)
         return settings.error();
@@ -70,18 +123,27 @@ int main(int argc, char** argv)
     CLI::App app{"Plays a .lumi package: a window with a fly camera, or pictures with --headless.", "lumicut-play"};
     app.set_version_flag("--version", "lumicut-play " LUMICUT_VERSION);
     app.footer("Settings (--set name=value):\n" + describeKnobs() +
-               "Exit codes: 0 ok, 1 usage, 2 I/O, 3 invalid package, 4 no suitable device or out of memory, 5 unsupported.");
+               "Exit codes: 0 ok, 1 usage, 2 I/O, 3 invalid package, 4 no suitable device or out of memory, 5 unsupported;\n"
+               "128 + N: signal N ended a sequence, whose frames so far are whole.");
     addDocumentation(app);
     PlayerOptions options;
-    std::string size = "1280x720", mode = "gi", view;
+    std::string size = "1280x720", frames, mode = "gi", view;
     bool list_devices = false;
     app.add_option("package", options.package, "the .lumi file");
     app.add_flag("--headless", options.headless, "render without a window");
     app.add_option("--size", size, "picture size in pixels, WIDTHxHEIGHT")->capture_default_str();
-    app.add_option("--frames", options.frame_count, "frames to render (headless default 1; in a window: no end)")
+    const CLI::Option* frames_option = app.add_option("--frames", frames, "how many to render (headless default 1; in a window: no end), or A-B along --path");
+    app.add_option("--spp", options.sample_count, "samples a pixel to render, of a sequence in each frame")
         ->check(CLI::Range(1u, UINT32_MAX));
-    app.add_option("--spp", options.sample_count, "samples a pixel to render")->check(CLI::Range(1u, UINT32_MAX));
-    app.add_option("--output", options.output, "picture to write at the end: .exr (linear) or .png");
+    app.add_option("--output", options.output,
+                   "picture to write at the end: .exr (linear) or .png; of a sequence as frame-%04d.exr");
+    app.add_option("--path", options.path, "camera path (.json) to follow; in a window until a key or the mouse moves the camera");
+    const CLI::Option* sequence_options[] = {
+        app.add_option("--fps", options.fps, "frames a second of the path, of a sequence")
+            ->check(CLI::Range(0.001, 1e6))
+            ->capture_default_str(),
+        app.add_flag("--force", options.force, "render frames of a sequence again that are there"),
+        app.add_flag("--list-missing", options.list_missing, "print the frames of a sequence that are not there, render nothing")};
     app.add_option("--mode", mode, "gi, direct or reference")->check(CLI::IsMember({"gi", "direct", "reference"}))->capture_default_str();
     app.add_option("--camera", options.camera, "camera by name or index; default the first");
     app.add_option("--seed", options.seed, "seed of all random numbers")->capture_default_str();
@@ -112,10 +174,15 @@ int main(int argc, char** argv)
     if (!view.empty())
         options.assignments.push_back("view=" + view);
     Status status = parseSize(size, options);
+    if (status && frames_option->count() > 0)
+        status = parseFrames(frames, options);
+    const auto given = std::ranges::find_if(sequence_options, [](const CLI::Option* option) { return option->count() > 0; });
+    if (status)
+        status = checkSequence(options, given == std::end(sequence_options) ? "" : (*given)->get_name());
     if (status)
         status = checkOptions(options);
     if (!status)
         return fail("lumicut-play", status.error());
-    status = options.headless ? playHeadless(options) : playWindowed(options);
+    status = options.sequence ? playSequence(options) : options.headless ? playHeadless(options) : playWindowed(options);
     return status ? int(ExitCode::kOk) : fail(options.package.string(), status.error());
 }

@@ -26,6 +26,16 @@ Result<Rendering> readAgainst(const PlayerOptions& options)
     return rendering;
 }
 
+Result<std::optional<CameraPath>> readPath(const PlayerOptions& options, const std::vector<Camera>& cameras)
+{
+    if (options.path.empty())
+        return std::optional<CameraPath>();
+    auto path = CameraPath::load(options.path, cameras);
+    if (!path)
+        return path.error();
+    return std::optional(std::move(*path));
+}
+
 struct OpenedDevice
 {
     Instance instance;
@@ -64,6 +74,10 @@ Result<OpenedScene> openScene(const PlayerOptions& options, std::span<const char
     auto against = readAgainst(options);
     if (!against)
         return against.error();
+    std::vector<Camera> cameras = packageCameras(*package);
+    auto path = readPath(options, cameras);
+    if (!path)
+        return path.error();
     if (!opened)
         return opened.error();
     auto& device = opened->device;
@@ -86,8 +100,9 @@ Result<OpenedScene> openScene(const PlayerOptions& options, std::span<const char
     return OpenedScene{.instance = opened->instance,
                        .device = std::move(device),
                        .scene = std::move(*scene),
-                       .cameras = packageCameras(*package),
+                       .cameras = std::move(cameras),
                        .camera = *camera,
+                       .path = std::move(*path),
                        .settings = *settings,
                        .against = std::move(*against)};
 }

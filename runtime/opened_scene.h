@@ -1,5 +1,6 @@
 // What playing begins and ends with, in a window or without one: a package on a device, then results on the disk.
 #pragma once
+#include "runtime/camera_path.h"
 #include "runtime/player_options.h"
 #include "runtime/statistics.h"
 
@@ -23,11 +24,12 @@ struct OpenedScene
     std::unique_ptr<SceneGpu> scene;
     std::vector<Camera> cameras; // the package's, at least one
     Camera camera;               // the selected one
+    std::optional<CameraPath> path; // of --path
     Settings settings;           // of the preset and --set
     Rendering against;           // of --against
 };
 
-/// Opens package, device and camera as `options` say.
+/// Opens package, device, camera and path as `options` say.
 /// @param window_extensions what the window library needs of Vulkan; empty: the device will never show a window
 Result<OpenedScene> openScene(const PlayerOptions& options, std::span<const char* const> window_extensions,
                               Statistics& statistics);

@@ -1,5 +1,6 @@
 // The options of lumicut-play's command line.
 #pragma once
+#include "runtime/frame_files.h"
 #include "runtime/renderer.h"
 #include "runtime/settings.h"
 
@@ -15,7 +16,12 @@ struct PlayerOptions
     uint32_t height = 720;
     uint32_t frame_count = 0; // 0: --spp decides; without either, 1 headless and no end in a window
     uint32_t sample_count = 0; // samples a pixel, 0: one a frame
-    std::filesystem::path output; // .exr or .png; empty: none
+    std::filesystem::path path;           // of the camera, .json; empty: it stands still, or flies by hand
+    std::optional<FrameRange> sequence;   // headless: these frames along `path`, each into a file
+    double fps = 30;                      // frames a second of the path's time
+    bool force = false;                   // renders frames again that are there
+    bool list_missing = false;            // prints the numbers of frames that are not there, and renders nothing
+    std::filesystem::path output; // .exr or .png, of a sequence with a place for the number; empty: none
     Mode mode = Mode::kGi;
     std::string camera; // name or index; empty: the first
     uint32_t seed = 0;

@@ -22,7 +22,7 @@ struct Statistics
     uint32_t photon_paths = 0;       // of the last frame's map, whole in it
     uint32_t photon_paths_asked = 0; // more than those where the store was full
     uint32_t photons = 0;            // that they left
-    std::vector<std::vector<StageTime>> frames; // per submission
+    std::vector<std::vector<StageTime>> frames; // of the first kMeasuredFrames submissions
 
     double elapsedMs() const;
     /// The result of `work()`, and in `ms` how long it took.
@@ -34,12 +34,17 @@ struct Statistics
         ms = elapsedMs() - start;
         return result;
     }
-    void addFrame(std::vector<StageTime> times) { frames.push_back(std::move(times)); }
+    void addFrame(std::vector<StageTime> times)
+    {
+        if (frames.size() < kMeasuredFrames)
+            frames.push_back(std::move(times));
+    }
     /// p50 and p95 of each stage over all submissions but the first.
     std::string summary() const;
     /// Schema "lumicut-play-stats/1".
     Status writeJson(const std::filesystem::path& path) const;
 
 private:
+    static constexpr size_t kMeasuredFrames = 10000; // enough for percentiles; a window may stay open for days
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };

@@ -99,7 +99,7 @@ PanelActions drawPanel(const PanelFacts& facts, Settings& settings, Mode& mode)
     actions.camera = chooseCamera(facts.cameras);
     ImGui::Separator();
     text(fmt::format("WASD QE fly at {:.3g} m/s (wheel, Shift)\n"
-                     "drag looks, 1-9 cameras\nF1 panel, F12 screenshot, Esc quits",
+                     "drag looks, 1-9 cameras\nR records a path\nF1 panel, F12 screenshot, Esc quits",
                      facts.speed));
     if (!facts.notice.empty())
         text(std::string(facts.notice));

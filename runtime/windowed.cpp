@@ -2,6 +2,7 @@
 
 #include "runtime/capture.h"
 #include "runtime/opened_scene.h"
+#include "runtime/path_recorder.h"
 #include "runtime/window_overlay.h"
 #include "runtime/window_panel.h"
 
@@ -14,12 +15,22 @@
 namespace
 {
 using Clock = std::chrono::steady_clock;
-constexpr size_t kMeasuredFrames = 10000; // enough for percentiles; a window may stay open for days
 
 float sceneSize(const SceneGpu& scene)
 {
     const gpu::vec3 a = scene.info().bounds_min, b = scene.info().bounds_max;
     return std::max(std::hypot(b.x - a.x, b.y - a.y, b.z - a.z), 1e-3f);
+}
+
+/// `stem` and the first number with which there is no file of any of the extensions, in the current folder.
+std::string freeName(const char* stem, std::initializer_list<const char*> extensions)
+{
+    for (uint32_t number = 1;; ++number)
+    {
+        const std::string name = fmt::format("{}-{:04}", stem, number);
+        if (std::ranges::none_of(extensions, [&](const char* extension) { return std::filesystem::exists(name + extension); }))
+            return name;
+    }
 }
 
 /// What is on the screen and how it changes from frame to frame.
@@ -28,7 +39,7 @@ class WindowedPlayer
 public:
     WindowedPlayer(const PlayerOptions& options, Window& window, const OpenedScene& opened, Swapchain& swapchain)
         : options_(options), settings_(opened.settings), window_(window), opened_(opened), swapchain_(swapchain), rec_(*opened.device),
-          overlay_(window, opened.instance, *opened.device, swapchain, rec_), fly_(opened.camera, sceneSize(*opened.scene))
+          overlay_(window, opened.instance, *opened.device, swapchain, rec_), fly_(opened.camera, sceneSize(*opened.scene)), follows_path_(opened.path.has_value())
     {
     }
 
@@ -38,6 +49,9 @@ private:
     Result<bool> fitSurface();
     void useKeys();
     void saveScreenshot();
+    void toggleRecording();
+    void jump(const Camera& camera);
+    void moveCamera(float seconds);
     void usePanel();
     void showFrame(Statistics& statistics);
     bool finished(uint32_t frames) const;
@@ -51,6 +65,9 @@ private:
     Recorder rec_;
     WindowOverlay overlay_;
     FlyCamera fly_;
+    bool follows_path_;
+    double path_seconds_ = 0; // since its start
+    std::optional<PathRecorder> recorder_;
     std::optional<Renderer> renderer_;
     std::vector<StageTime> stages_;
     std::string notice_;
@@ -79,16 +96,50 @@ Result<bool> WindowedPlayer::fitSurface()
 
 void WindowedPlayer::saveScreenshot()
 {
-    namespace fs = std::filesystem;
-    uint32_t number = 1;
-    const auto path = [&](const char* extension) { return fs::path(fmt::format("screenshot-{:04}{}", number, extension)); };
-    while (fs::exists(path(".png")) || fs::exists(path(".exr")))
-        ++number;
-    notice_ = fmt::format("wrote {} and .exr", path(".png").string());
+    const std::string name = freeName("screenshot", {".png", ".exr"});
+    notice_ = fmt::format("wrote {}.png and .exr", name);
     for (const char* extension : {".png", ".exr"})
-        if (const Status status = capture(path(extension), *renderer_, *opened_.device, *opened_.scene, settings_); !status)
+        if (const Status status = capture(name + extension, *renderer_, *opened_.device, *opened_.scene, settings_); !status)
             notice_ = status.error().message;
     fmt::print(stderr, "{}\n", notice_);
+}
+
+void WindowedPlayer::toggleRecording()
+{
+    if (!recorder_)
+    {
+        recorder_.emplace(fly_.camera());
+        notice_ = "records a path, R ends it";
+        return;
+    }
+    const std::string name = freeName("path", {".json"}) + ".json";
+    const Status status = recorder_->finish(fly_.camera()).save(name);
+    recorder_.reset();
+    notice_ = status ? fmt::format("wrote {}", name) : status.error().message;
+    fmt::print(stderr, "{}\n", notice_);
+}
+
+void WindowedPlayer::jump(const Camera& camera)
+{
+    follows_path_ = false;
+    fly_.jump(camera);
+}
+
+/// Along the path, over and over, until the person takes the camera; then by hand.
+void WindowedPlayer::moveCamera(float seconds)
+{
+    const FlyInput input = window_.takeFlyInput(!overlay_.wantsKeyboard(), !overlay_.wantsMouse());
+    follows_path_ &= !input.moves();
+    if (follows_path_)
+    {
+        const CameraPath& path = *opened_.path;
+        path_seconds_ += seconds;
+        const double round = path.end() - path.start();
+        fly_.jump(path.at(path.start() + (round > 0 ? std::fmod(path_seconds_, round) : 0)));
+    }
+    fly_.move(input, seconds);
+    if (recorder_)
+        recorder_->add(fly_.camera(), seconds);
 }
 
 void WindowedPlayer::useKeys()
@@ -103,8 +154,10 @@ void WindowedPlayer::useKeys()
             panel_ = !panel_;
         else if (key == GLFW_KEY_F12)
             saveScreenshot();
+        else if (key == GLFW_KEY_R)
+            toggleRecording();
         else if (key >= GLFW_KEY_1 && key <= GLFW_KEY_9 && size_t(key - GLFW_KEY_1) < opened_.cameras.size())
-            fly_.jump(opened_.cameras[size_t(key - GLFW_KEY_1)]);
+            jump(opened_.cameras[size_t(key - GLFW_KEY_1)]);
     }
 }
 
@@ -131,7 +184,7 @@ void WindowedPlayer::usePanel()
         notice_ = kNothingToCompareWith;
     }
     if (actions.camera)
-        fly_.jump(opened_.cameras[*actions.camera]);
+        jump(opened_.cameras[*actions.camera]);
     const bool counts_changed = actions.restart && options_.mode == Mode::kGi; // they decide how much is allocated
     if (options_.mode == mode && !counts_changed && actions.restart)
         renderer_->restart();
@@ -167,8 +220,7 @@ void WindowedPlayer::showFrame(Statistics& statistics)
     rec_.submit(swapchain_.acquired(), swapchain_.rendered());
     swapchain_.present();
     stages_ = rec_.wait();
-    if (statistics.frames.size() < kMeasuredFrames)
-        statistics.addFrame(stages_);
+    statistics.addFrame(stages_);
 }
 
 bool WindowedPlayer::finished(uint32_t frames) const
@@ -199,10 +251,12 @@ Status WindowedPlayer::play(Statistics& statistics)
         useKeys();
         usePanel();
         // A slow frame must not throw the camera across the scene.
-        fly_.move(window_.takeFlyInput(!overlay_.wantsKeyboard(), !overlay_.wantsMouse()), std::min(seconds, 0.25f));
+        moveCamera(std::min(seconds, 0.25f));
         showFrame(statistics);
         ++frames;
     }
+    if (recorder_)
+        toggleRecording();
     if (!renderer_) // closed before anything could be seen
         return Success{};
     return writeResults(options_, opened_, *renderer_, settings_, statistics);

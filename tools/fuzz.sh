@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
 # Fuzzes every reader under the address and undefined-behaviour sanitizers, as many side by side as there are cores.
-#   tools/fuzz.sh [SECONDS] [TARGET...]     600 seconds each and all targets by default: exr gltf hdr ktx2 package settings
+#   tools/fuzz.sh [SECONDS] [TARGET...]     600 seconds each and all targets by default: exr gltf hdr ktx2 package path settings
 # Findings stay in build/asan/tests/fuzz: corpus/TARGET, and crash-*, timeout-* where it failed.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 seconds=${1-600}
 targets=("${@:2}")
-((${#targets[@]} > 0)) || targets=(exr gltf hdr ktx2 package settings)
+((${#targets[@]} > 0)) || targets=(exr gltf hdr ktx2 package path settings)
 if [[ ! $seconds =~ ^[1-9][0-9]*$ ]]; then
     echo "usage: tools/fuzz.sh [SECONDS] [TARGET...]" >&2
     exit 1

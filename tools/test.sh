@@ -6,7 +6,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 tools/setup.sh
 tools/build.sh release
-tools/build.sh asan fuzz_exr fuzz_gltf fuzz_hdr fuzz_ktx2 fuzz_package fuzz_seeds fuzz_settings
+tools/build.sh asan fuzz_exr fuzz_gltf fuzz_hdr fuzz_ktx2 fuzz_package fuzz_path fuzz_seeds fuzz_settings
 
 rm -f build/{asan,release}/Testing/Temporary/LastTestsFailed.log
 failed=()

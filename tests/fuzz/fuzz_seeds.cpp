@@ -181,6 +181,18 @@ void saveSettings(const fs::path& folder)
     const std::string wrong = "default\nphotons.count=-1\nexposure=nan\nexposure=1e999\n=\nterm=\n";
     save(folder / "wrong", wrong.data(), wrong.size());
 }
+
+/// Camera paths with every member that a key may have.
+void savePaths(const fs::path& folder)
+{
+    const std::string path = R"({"schema": "lumicut-path/1", "keys": [{"time": -1.5, "camera": "hall"}, {"time": 0, "camera": 1},
+        {"time": 2, "position": [1, 2, -3e2], "forward": [0, 1, 0], "up": [1, 0, 0], "vertical_fov": 0.7, "near_plane": 0.1,
+         "far_plane": 20}, {"time": 2.5, "position": [0, 0, 0], "forward": [-1, 0, 1], "orthographic_height": 3}]})";
+    save(folder / "path.json", path.data(), path.size());
+    const std::string one = R"({"schema": "lumicut-path/1", "keys": [{"time": 1e9, "camera": 0}]})";
+    save(folder / "one.json", one.data(), one.size());
+}
+
 /// Textures of every kind that is read.
 void saveTextures(const fs::path& folder)
 {
@@ -209,6 +221,7 @@ int main(int argc, char** argv)
                                                                        {"exr", saveExrs},
                                                                        {"gltf", saveScenes},
                                                                        {"ktx2", saveTextures},
+                                                                       {"path", savePaths},
                                                                        {"settings", saveSettings}};
     for (const auto& [name, saveAll] : kinds)
     {

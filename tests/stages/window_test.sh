@@ -21,6 +21,16 @@ grep -q '"samples_per_pixel": 3,' "$folder/stats.json" || fail "not 3 samples a 
 header=$(od -An -tx1 -N24 "$folder/picture.png" | tr -d ' \n')
 [ "$header" = 89504e470d0a1a0a0000000d49484452000000c800000078 ] || fail "picture.png begins with $header"
 
+# A path of one key: the camera stands there, and shows what a sequence shows of it.
+cat >"$folder/path.json" <<END
+{"schema": "lumicut-path/1", "keys": [{"time": 0, "position": [0.3, 1.2, 1], "forward": [-0.2, 0, -1]}]}
+END
+set -- "$folder/cornell.lumi" --size 200x120 --mode direct --path "$folder/path.json"
+xvfb-run -a -s "-screen 0 1280x720x24" "$play" "$@" --frames 3 --output "$folder/path.png" 2>"$folder/play.log" ||
+    fail "exit code $? with --path: $(cat "$folder/play.log")"
+"$play" "$@" --headless --frames 0-0 --spp 3 --output "$folder/path-%d.png" 2>"$folder/play.log" || fail "$(cat "$folder/play.log")"
+cmp "$folder/path.png" "$folder/path-0.png" || fail "the window does not show what --path says"
+
 code=0
 env -u DISPLAY -u WAYLAND_DISPLAY "$play" "$folder/cornell.lumi" 2>"$folder/none.log" || code=$?
 [ $code = 4 ] || fail "exit code $code without a display: $(cat "$folder/none.log")"

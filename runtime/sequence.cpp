@@ -1,0 +1,191 @@
+#include "runtime/sequence.h"
+
+#include "runtime/capture.h"
+#include "runtime/frame_files.h"
+#include "runtime/frame_seed.h"
+#include "runtime/headless.h"
+#include "runtime/interruption.h"
+#include "runtime/opened_scene.h"
+
+#include <algorithm>
+#include <cstring>
+#include <numeric>
+
+namespace
+{
+// A renderer remembers earlier frames, and a frame must come out the same whether they were rendered in this run or
+// not. So sequences are cut into blocks at fixed numbers. A block is begun with a new renderer, which renders some
+// frames before the first, and throws those pictures away; frames of a block come in order, whichever of them are asked
+// for.
+//
+// kWarmUp frames more for every kBlock: a quarter more work, and after an interruption at most 39 frames are rendered
+// again. Where a remembered frame's weight falls to w in each frame after it, w^kWarmUp of all weight lies before the
+// warm-up and is missing at the block's start: 1/256 at w = 1/2, a tenth at 3/4, a third at 7/8. The frame there is
+// that much noisier, not darker, as the weights of the others grow. Shorter blocks would cost more and show more such
+// starts.
+constexpr int64_t kBlock = 32;
+constexpr int64_t kWarmUp = 8;
+
+/// Renders frames of one sequence.
+class Sequence
+{
+public:
+    /// @param frame_count that render() will be given
+    Sequence(const PlayerOptions& options, const OpenedScene& opened, const FrameFiles& files, size_t frame_count,
+             Statistics& statistics)
+        : options_(options), opened_(opened), files_(files), frame_count_(frame_count), statistics_(statistics),
+          rec_(*opened.device)
+    {
+    }
+
+    /// @param frames ascending
+    Status render(std::span<const uint32_t> frames);
+    /// Nothing where not even a renderer could be made.
+    Status writeResults();
+
+private:
+    Status begin();
+    Status renderBlock(std::span<const uint32_t> frames);
+    Status renderStanding(uint32_t frame);
+    Status renderSamples(int64_t frame, uint32_t sample_count);
+    Status write(uint32_t frame);
+
+    const PlayerOptions& options_;
+    const OpenedScene& opened_;
+    const FrameFiles& files_;
+    size_t frame_count_, written_ = 0; // that are to be written, and are
+    Statistics& statistics_;
+    Recorder rec_;
+    std::optional<Renderer> renderer_;
+};
+
+/// A renderer that remembers nothing.
+Status Sequence::begin()
+{
+    if (const Status status =
+            makeRenderer(renderer_, opened_, options_.mode, options_.width, options_.height, opened_.settings);
+        !status)
+        return status;
+    statistics_.pipeline_ms = opened_.device->pipelineMs();
+    return Success{};
+}
+
+Status Sequence::renderSamples(int64_t frame, uint32_t sample_count)
+{
+    const Camera camera = opened_.path->at(double(frame) / options_.fps);
+    if (::renderSamples(rec_, *renderer_, opened_, camera, frameSeed(options_.seed, frame), sample_count, statistics_))
+        return Success{};
+    return Error{ExitCode(128 + interruption()),
+                 fmt::format("ended by a signal ({}) with {} of {} frames written; the same command renders the others",
+                             ::strsignal(interruption()), written_, frame_count_)};
+}
+
+Status Sequence::write(uint32_t frame)
+{
+    const std::filesystem::path path = files_.of(frame);
+    if (const Status status = capture(path, *renderer_, *opened_.device, *opened_.scene, opened_.settings); !status)
+        return status.error().about(path.string());
+    fmt::print(stderr, "{} ({} of {})\n", path.string(), ++written_, frame_count_);
+    return Success{};
+}
+
+/// @param frames of one block, ascending
+Status Sequence::renderBlock(std::span<const uint32_t> frames)
+{
+    if (const Status status = begin(); !status)
+        return status;
+    const int64_t block = frames.front() / kBlock * kBlock;
+    const int64_t warm_up = options_.mode == Mode::kReference ? 0 : kWarmUp; // path tracing remembers nothing
+    for (int64_t frame = block - warm_up; frame <= frames.back(); ++frame)
+    {
+        if (const Status status = renderSamples(frame, 1); !status)
+            return status;
+        if (frame != frames.front())
+            continue;
+        if (const Status status = write(frames.front()); !status)
+            return status;
+        if (frames = frames.subspan(1); frames.empty())
+            break;
+    }
+    return Success{};
+}
+
+/// A frame of many samples is a standing picture: what another one left would only be in the way.
+Status Sequence::renderStanding(uint32_t frame)
+{
+    if (const Status status = begin(); !status)
+        return status;
+    if (const Status status = renderSamples(frame, options_.sample_count); !status)
+        return status;
+    return write(frame);
+}
+
+Status Sequence::render(std::span<const uint32_t> frames)
+{
+    while (!frames.empty())
+    {
+        const bool standing = options_.sample_count > 0;
+        const auto same_block = [&](uint32_t frame) { return frame / kBlock == frames.front() / kBlock; };
+        const size_t count = standing ? 1 : size_t(std::ranges::find_if_not(frames, same_block) - frames.begin());
+        const Status status = standing ? renderStanding(frames.front()) : renderBlock(frames.first(count));
+        if (!status)
+            return status;
+        frames = frames.subspan(count);
+    }
+    return Success{};
+}
+
+Status Sequence::writeResults()
+{
+    if (!renderer_)
+        return Success{};
+    PlayerOptions rest = options_;
+    rest.output.clear(); // the frames are there
+    return ::writeResults(rest, opened_, *renderer_, opened_.settings, statistics_);
+}
+
+Result<std::vector<uint32_t>> framesToRender(const PlayerOptions& options, const FrameFiles& files)
+{
+    if (!options.force)
+        return files.missing(*options.sequence, options.width, options.height);
+    std::vector<uint32_t> all(options.sequence->count());
+    std::iota(all.begin(), all.end(), options.sequence->first);
+    return all;
+}
+
+Status leaveAlone(const PlayerOptions& options, const Statistics& statistics)
+{
+    fmt::print(stderr, "all {} frames are there; --force renders them again\n", options.sequence->count());
+    if (options.stats.empty())
+        return Success{};
+    const Status status = statistics.writeJson(options.stats);
+    return status ? status : status.error().about(options.stats.string());
+}
+} // namespace
+
+Status playSequence(const PlayerOptions& options)
+{
+    const auto files = FrameFiles::parse(options.output);
+    if (!files)
+        return files.error();
+    const auto frames = framesToRender(options, *files);
+    if (!frames)
+        return frames.error();
+    if (options.list_missing)
+    {
+        for (const uint32_t frame : *frames)
+            fmt::print("{}\n", frame);
+        return Success{};
+    }
+    Statistics statistics;
+    if (frames->empty())
+        return leaveAlone(options, statistics);
+    noteInterruptions();
+    const auto opened = openScene(options, {}, statistics);
+    if (!opened)
+        return opened.error();
+    Sequence sequence(options, *opened, *files, frames->size(), statistics);
+    const Status rendered = sequence.render(*frames);
+    const Status written = sequence.writeResults();
+    return rendered ? written : rendered;
+}
