@@ -64,7 +64,7 @@ public:
              });
     }
 
-    /// Whether `value` names an item of a list; says so where it does not. `what` is the item's noun.
+    /// Whether `value` is the index of an item of a list; adds a warning if it is not. `what` is the item's noun.
     bool names(const nlohmann::json& value, const std::string& pointer, const char* target, const char* what,
                const char* stand_in);
     /// The same of a member, which is an unsigned number afterwards, or gone.

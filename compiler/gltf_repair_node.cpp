@@ -4,7 +4,7 @@ using nlohmann::json;
 
 namespace
 {
-/// Keeps those entries of an array of node indices that exist and that `keep` wants.
+/// Keeps those entries of an array of node indices that exist and for which `keep` is true.
 template <typename Keep>
 void repairChildren(References& references, const JsonPlace& place, const char* key, const Keep& keep)
 {

@@ -1,4 +1,4 @@
-// What a user is told of text that is no JSON.
+// The message about text that is not valid JSON.
 #pragma once
 #include "format/result.h"
 

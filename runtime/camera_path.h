@@ -14,7 +14,7 @@ struct CameraKey
 class CameraPath
 {
 public:
-    /// Seconds between keys, at least: nearer ones would ask for speeds without bound.
+    /// Least seconds between keys: nearer ones would need unbounded speeds.
     static constexpr double kLeastStep = 1e-6;
 
     /// Reads a path. @param cameras of the package, which keys may name

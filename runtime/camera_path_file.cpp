@@ -84,7 +84,7 @@ Result<double> KeyReader::number(const char* name, double least, double most) co
     return found->get<double>();
 }
 
-/// Leaves `value` as it is where the key does not say.
+/// Leaves `value` unchanged if the key does not have the member.
 Status KeyReader::readNumber(const char* name, double least, double most, float& value) const
 {
     if (!key_.contains(name))

@@ -14,13 +14,13 @@ constexpr uint32_t kCausticBounces = 2; // photons that a caustic path is given 
 /// Of a wall that 12 rays to the rim may miss, a node's light passes 0.05 % at most.
 constexpr uint32_t kRimProbes = 12;
 
-/// Emissions before the first frame that the guide learns from. Through a window one photon in a hundred finds its way at first;
-/// from one round to the next more do. The mean of a first frame of a room on a plain of 10 km varied by 16 % after one, by 9 %
-/// after four and after eight (preset preview); with the default preset, and in Sponza, eight are noisier than four: a guide that
-/// is sure of itself sends little elsewhere.
+/// Emissions that train the guide before the first frame. Behind a window one photon in a hundred arrives at first; from round to
+/// round more do. The mean of a first frame of a room on a plain of 10 km varied by 16 % after one, by 9 %
+/// after four and after eight (preset preview); with the default preset, and in Sponza, eight are noisier than four: a sharp
+/// distribution leaves few photons elsewhere.
 constexpr uint32_t kRehearsals = 4;
 
-constexpr float kGuideReach = 0.25f; // of the view distance: how far from their camera guided photons serve
+constexpr float kGuideReach = 0.25f; // of the view distance: up to this far from their camera guided photons are reused
 
 /// Progressive photon mapping: r_n^2 / r_0^2 = prod (i + 2/3) / (i + 1) over the n frames before (Hachisuka et al.
 /// 2008; Knaus & Zwicker 2011), so that noise and bias vanish together.
@@ -220,8 +220,8 @@ PhotonStage::Output GlobalIllumination::emitPhotons(const Context& c)
     return stored;
 }
 
-/// Before the first frame the guide knows nothing: looks where light will be wanted, and follows photons to learn which of
-/// them get there.
+/// Trains the guide before the first frame: splats the first hits of gathering rays, then traces photons and learns which of them
+/// arrive there.
 void GlobalIllumination::rehearse(const Context& c)
 {
     guide_->reset(c.rec);
@@ -235,8 +235,8 @@ void GlobalIllumination::rehearse(const Context& c)
     }
 }
 
-/// Whether the map that `made` tells of is the one that `in` would give; else notes that it is about to be made. A
-/// standing picture asks for other photons in every frame.
+/// Whether the map described by `made` is the one that `in` would give; otherwise sets `made`. A static view uses other photons
+/// in every frame.
 bool GlobalIllumination::isThere(const Context& c, std::optional<MapOrigin>& made, const PhotonStage::Input& in) const
 {
     const MapOrigin asked{.lights = scene_.lightsVersion(), .in = in};
@@ -246,7 +246,7 @@ bool GlobalIllumination::isThere(const Context& c, std::optional<MapOrigin>& mad
     return false;
 }
 
-/// Guided photons are where the camera that they were made for wants light: far from there others are due.
+/// Guided photons suit the camera that they were emitted for: far from there new ones are needed.
 bool GlobalIllumination::isFar(const Context& c) const
 {
     const gpu::vec3 a = c.frame.camera.position, b = map_camera_;

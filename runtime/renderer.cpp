@@ -60,7 +60,7 @@ Renderer::Renderer(const Device& device, const SceneGpu& scene, Mode mode, uint3
     }
 }
 
-/// What this frame continues: a standing picture where neither camera nor lights have changed, else the last frame only.
+/// What this frame continues: a static view if neither camera nor lights have changed, else the last frame only.
 FrameInfo Renderer::beginFrame(Recorder& rec, const Camera& camera, const Settings& settings, uint32_t seed)
 {
     FrameInfo frame{.camera = cameraParams(camera, width_, height_), .map_seed = seed, .number = frame_count_++};

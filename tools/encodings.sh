@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Whether a scene looks the same in other encodings (Draco, meshopt, quantized, WebP, KTX2, ...): compiles each file, renders
+# Compares the pictures of a scene in other encodings (Draco, meshopt, quantized, WebP, KTX2, ...): compiles each file, renders
 # mode gi from the same camera with the same seed, and prints how far each picture is from that of the first file.
 #   tools/encodings.sh [OPTION...] FILE OTHER...
 #     --size WxH         of the pictures; default 160x90

@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# How the picture looks while the camera moves: one table of lumicut-bench motion, with the goals.
+# The quality of the picture while the camera moves: one table of lumicut-bench motion, with the goals.
 #   tools/motion.sh [OPTION...] [OUTDIR]    OUTDIR: packages, and below references/ the references; default build/truth
 #     --scenes A,B,...   of tools/bench/scenes.sh; default cornell,atrium,hall,sponza, as far as the files are there
 #     --presets A,B,...  of mode gi; default default,preview
 #     --paths A,B,...    sway, orbit or files; default sway,orbit
-#     --frames N         that are judged; default 60
+#     --frames N         measured; default 60
 #     --spp N            samples a pixel of the references; default 256
 #     --size WxH         of all pictures; default 320x180
 #     --mode NAME        gi, direct or reference, which is path tracing at one sample a pixel and frame; default gi
@@ -51,7 +51,7 @@ mkdir -p "$out"
 build_programs
 failed=0
 
-# row SCENE PRESET PATH: wants the scene's `package`.
+# row SCENE PRESET PATH: set `package` first.
 row() {
     local result folder=$out/motion/$1-$2-$(basename "$3")
     local -a extra=()

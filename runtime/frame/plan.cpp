@@ -8,11 +8,11 @@
 
 namespace
 {
-/// What reflects this much sends a glossy ray from every pixel: a standing picture can wait for less noise.
+/// Russian-roulette thresholds of glossy rays: lower in a static view, where noise averages out.
 constexpr float kSureInMotion = 0.2f, kSureStanding = 0.05f;
 
-/// A standing picture interpolates until every pixel could have had this many rays of its own (kLeastInterpolated frames at
-/// least), then takes those: the blur of the first frames fades, and their lack of noise covers the noise of the next ones.
+/// A static view interpolates until every pixel could have had this many rays of its own (kLeastInterpolated frames at least),
+/// then gathers at pixels: the blur of the first frames fades, and their lack of noise hides the noise of the next ones.
 constexpr uint32_t kOwnRays = 256, kLeastInterpolated = 8;
 
 /// A picture of one term shows that alone; the view of the irradiance is made of the indirect light; other views draw over all.
@@ -23,8 +23,8 @@ bool shows(const Settings& settings, uint32_t term)
     return settings.term == gpu::kTermAll || settings.term == term;
 }
 
-/// A standing picture needs the filter less with every frame: for four times the samples one pass less, until none is left
-/// and the picture is on its way to what it should be. Histories spare a pass, too.
+/// A static view needs the filter less with every frame: for four times the samples one pass less, until none is left and the
+/// picture converges. Histories spare a pass, too.
 uint32_t denoisePasses(const Settings& settings, const FrameTraits& traits, const FrameInfo& frame)
 {
     const uint32_t fewer = uint32_t(std::bit_width(frame.accumulated + 1)) / 2 + (frame.previous && settings.history_frames > 0 ? 1 : 0);
@@ -49,7 +49,7 @@ FramePlan planFrame(const Settings& settings, const FrameTraits& traits, const F
     plan.caustics = traits.has_specular && shows(settings, gpu::kTermCaustics);
     plan.makes_map = plan.indirect || plan.glossy;
     // Rough reflection is from the samples' harmonics in the first frame of a picture, with little noise; harmonics of order 4
-    // cannot tell everything, so that the frames after it send rays.
+    // lose detail, so that the frames after it trace rays.
     plan.harmonics = plan.glossy && traits.reflects_roughly && GlossyMode(settings.glossy_mode) == GlossyMode::kHarmonics && !frame.stands();
     // Interpolation blurs what is smaller than the distance of samples, however many frames it has.
     const bool own_rays = traits.gathers_at_pixels && settings.view != gpu::kViewIrradiance &&

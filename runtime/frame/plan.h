@@ -1,18 +1,18 @@
-// What a frame of mode gi does, decided before any of it is recorded.
+// The plan of a frame of mode gi, made before any of it is recorded.
 #pragma once
 #include "runtime/frame/frame_info.h"
 #include "runtime/frame/light_buffers.h"
 #include "runtime/settings.h"
 
-/// What a scene, and the room that was made for it, let a frame do.
+/// Properties of the scene and of the allocated buffers that a plan depends on.
 struct FrameTraits
 {
     bool has_specular = false;        // mirrors, glass, rough reflection
     bool has_mirrors = false;         // delta events that are more than the sheen of a smooth layer
     bool has_caustic_targets = false; // mirrors and glass to aim photons at
-    bool reflects_roughly = false;    // some reflection is so rough that spherical harmonics can stand for rays
-    bool has_noisy_direct = false;    // lights that one ray does not tell the whole of
-    bool has_guide = false;           // photons are guided to where light is wanted
+    bool reflects_roughly = false;    // some reflection is so rough that spherical harmonics can replace rays
+    bool has_noisy_direct = false;    // lights with an area, or several of them: a ray samples a part
+    bool has_guide = false;           // photons are guided
     bool gathers_at_pixels = false;   // there is room for gathering rays of every pixel
     uint32_t pixel_rays = 1;          // of each, a frame
 };
@@ -20,16 +20,16 @@ struct FrameTraits
 struct FramePlan
 {
     bool emission, direct, indirect, glossy, caustics; // terms that the frame shows
-    bool noisy_direct;       // direct light that one ray does not tell the whole of
-    bool makes_map;          // photons, their tree and the cut are wanted
+    bool noisy_direct;       // direct light that one ray samples only in part
+    bool makes_map;          // photons, their tree and the cut are needed
     bool gathers_at_samples; // final gathering at irradiance samples, between which pixels interpolate
     bool gathers_at_pixels;  // final gathering at every pixel instead
-    bool harmonics;          // rough reflection comes from the samples' harmonics where they can tell it
+    bool harmonics;          // rough reflection is computed from the samples' harmonics where they suffice
     uint32_t chain_depth;    // delta events that gathering rays follow
     uint32_t denoise_passes; // of the filter over what is noisy; 0: none
-    bool remembers;          // light goes into histories, and out of them where frame.previous is there
+    bool remembers;          // light is averaged with histories, and histories are updated
     bool antialiases;        // the picture is blended with the last one
-    float sure_reflectance;  // what reflects this much sends a glossy ray from every pixel
+    float sure_reflectance;  // Russian-roulette threshold of glossy rays
 
     /// gpu::kLight* bits of the terms that the frame makes.
     uint32_t lightTerms() const

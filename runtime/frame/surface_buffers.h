@@ -1,4 +1,4 @@
-// What the pixels of a frame see: one point each, and a second where a mirror lies over it.
+// The surfaces visible in the pixels of a frame: one point each, and a second for what a smooth layer over it mirrors.
 #pragma once
 #include "runtime/gpu/gpu.h"
 #include "shaders/primary/primary.h"

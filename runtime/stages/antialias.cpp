@@ -4,8 +4,8 @@
 
 namespace
 {
-/// Frames of a standing picture that the moving one before it counts for at most, and after how many it has gone. More of the
-/// first hide the noise of the first frames longer, fewer of the second end sooner what the moving picture got wrong.
+/// In a static view, the weight in frames of the moving picture before it, and the number of frames after which it has faded out.
+/// A larger weight hides the noise of the first frames longer; a shorter fade removes errors of the moving picture sooner.
 constexpr uint32_t kBeforeCounts = 8, kBeforeLasts = 64;
 constexpr float kMostCounted = 255;
 } // namespace

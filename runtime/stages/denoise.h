@@ -1,4 +1,4 @@
-// Denoising: spreads light that pixels know from a random ray or two over those that see the same surface.
+// Denoising: filters light that was estimated with a ray or two a pixel over pixels of the same surface.
 #pragma once
 #include "runtime/stages/signals.h"
 #include "shaders/denoise/denoise.h"

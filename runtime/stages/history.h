@@ -1,4 +1,4 @@
-// What pixels remember: while the picture moves, light is the mean of this frame's and of what the same surface showed before.
+// Temporal histories: while the camera moves, light is the mean of this frame's and of the same surface's in frames before.
 #pragma once
 #include "runtime/stages/signals.h"
 #include "shaders/history/history.h"
@@ -14,11 +14,11 @@ public:
         const SurfaceBuffers& surface;
         const LightBuffers& light; // so do its indirect light and caustics
         const FrameInfo& frame;    // frame.previous: record() was called for it, too
-        uint32_t most_frames;      // <= gpu::kMostHistoryFrames: that a mean may stand for
+        uint32_t most_frames;      // <= gpu::kMostHistoryFrames: in a mean
     };
     void record(Recorder& rec, const Input& in);
 
-    /// Share of the pixels that saw a surface before which the last record() remembered; waits for the device.
+    /// Fraction of the pixels whose surface the last record() found in the history; waits for the device.
     double rememberedShare(const Device& device, uint32_t point_count) const;
 
 private:

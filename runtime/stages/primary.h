@@ -10,11 +10,11 @@ public:
     /// Of a pixel: what textures are blurred over, a little less than one sample a pixel can show.
     static constexpr float kTextureBlur = 0.7f;
 
-    /// Of a ray at distance 1, metres (perspective), or of every ray (orthographic). The frames of a standing picture share out
-    /// its pixels: each shows its own part, so that textures come out sharp.
+    /// Of a ray at distance 1, metres (perspective), or of every ray (orthographic). In a static view each
+    /// frame covers its own part of a pixel, so that textures become sharp.
     static float textureWidth(const gpu::CameraParams& camera);
 
-    /// @param splits whether mirrored light gets points of its own, else it is seen by chance
+    /// @param splits whether mirrored light gets points of its own; otherwise reflection or transmission is chosen at random
     PrimaryStage(const Device& device, const SceneGpu& scene, uint32_t max_pixels, bool splits = false);
 
     struct Input

@@ -1,4 +1,4 @@
-// A frame's light as signals that filters and histories can read: with what it falls on and where that was seen before.
+// A frame's light as signals for filters and histories, with surface guides and motion vectors.
 #pragma once
 #include "runtime/frame/frame_info.h"
 #include "runtime/frame/light_buffers.h"

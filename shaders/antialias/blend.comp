@@ -4,8 +4,8 @@
 #include "shaders/antialias/antialias.h"
 #include "shaders/lib/math.glsl"
 
-// The mean of this frame, which sees one point of each pixel, and of the last picture, moved to where things are now and kept
-// within what the pixel's surroundings show (Karis 2014, "High-Quality Temporal Supersampling"; Salvi 2016, "An Excursion in
+// The mean of this frame, which samples one point of each pixel, and of the last picture, reprojected and clipped to the range of
+// the pixel's neighbourhood (Karis 2014, "High-Quality Temporal Supersampling"; Salvi 2016, "An Excursion in
 // Temporal Supersampling"). One thread per pixel.
 
 layout(local_size_x = kRaysGroupSize) in;

@@ -3,8 +3,7 @@
 #extension GL_EXT_scalar_block_layout : require
 #include "shaders/antialias/antialias.h"
 
-// What a standing picture shows: the mean of its frames, out of the moving picture that it began with, which fades. One thread
-// per pixel.
+// The picture of a static view: the mean of its frames, with the picture of the moving camera fading out. One thread per pixel.
 
 layout(local_size_x = kRaysGroupSize) in;
 layout(push_constant, scalar) uniform Params { StandParams params; };
@@ -12,7 +11,7 @@ layout(push_constant, scalar) uniform Params { StandParams params; };
 layout(set = 1, binding = 0, scalar) readonly buffer Sum { vec3 sum[]; };
 layout(set = 1, binding = 1, scalar) readonly buffer Before { vec3 before[]; };
 layout(set = 1, binding = 2, scalar) writeonly buffer Shown { vec3 shown[]; };
-layout(set = 1, binding = 3, scalar) buffer Counts { float counts[]; }; // of frames that `shown` stands for
+layout(set = 1, binding = 3, scalar) buffer Counts { float counts[]; }; // frames in the mean of `shown`
 
 void main()
 {

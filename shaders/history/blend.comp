@@ -6,7 +6,7 @@
 
 // Makes each term's light the mean of this frame's and of what the same surface showed in the frames before, found where the
 // motion says and taken only from pixels that saw that surface (Schied et al. 2017, "Spatiotemporal Variance-Guided Filtering",
-// 4.1). Light is remembered over reflectance, so that textures stay sharp. One thread per pixel.
+// 4.1). Light is stored divided by reflectance, so that textures stay sharp. One thread per pixel.
 
 layout(local_size_x = kRaysGroupSize) in;
 layout(push_constant, scalar) uniform Params { HistoryParams params; };
@@ -26,10 +26,10 @@ const float kOffPlane = 2.0;   // pixels, off the surface's plane, at which anot
 const float kFarAlong = 32.0;  // pixels, along it: what a pixel covers of a surface seen at 2 degrees
 const float kSameFacing = 0.9; // cosine between smooth normals of one surface
 const float kLeastTap = 0.02;  // weights that sum to less are rounding
-const uint kKnownFrames = 4u;  // from so many on the spread of a memory says more of its error than its neighbours do
+const uint kKnownFrames = 4u;  // from this many frames on, the error is estimated from the history instead of from neighbours
 
-// A mirror shows other things as the eye moves: the sharper the lobe, the fewer frames of it are of use. A lobe of width 1 turns
-// with the surface as diffuse light does.
+// Reflections move with the eye: the sharper the lobe, the fewer past frames are used. A lobe of width 1 moves with the surface,
+// like diffuse light.
 const float kSharpFrames = 4.0;
 
 struct Past
@@ -112,7 +112,7 @@ Memory remember(Memory past, vec3 light, float most)
     return Memory(mean, frames + 1.0, max(square_ / max(square(luminance(mean)), 1e-30), 1.0));
 }
 
-/// Standard error of the mean's brightness; < 0 where too few frames tell.
+/// Standard error of the mean's brightness; < 0 if there are too few frames.
 float errorOf(Memory m)
 {
     return m.frames < float(kKnownFrames) ? -1.0 : luminance(m.light) * sqrt((m.spread - 1.0) / m.frames);

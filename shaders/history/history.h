@@ -1,4 +1,4 @@
-// What pixels remember of the light of frames before. Shared by runtime/stages/history.cpp and shaders/history/*.
+// Temporal histories of pixels' light. Shared by runtime/stages/history.cpp and shaders/history/*.
 #ifndef SHADERS_HISTORY_H
 #define SHADERS_HISTORY_H
 #include "shaders/signals/signals.h"
@@ -26,7 +26,7 @@ struct HistoryParams
 {
     uint point_count;
     uint width;        // of the picture, pixels
-    uint most_frames;  // that a mean may stand for; the next one weighs 1 / (most_frames + 1)
+    uint most_frames;  // in a mean; the next frame weighs 1 / (most_frames + 1)
     uint has_previous; // 1: there are histories to go on from
     uint seed;         // of rounding
     float pixel_angle; // radians from a pixel to the next; of an orthographic camera 0

@@ -1,4 +1,4 @@
-// A pixel's remembered light as numbers. Functions only.
+// Unpacking and packing of pixels' histories. Functions only.
 #ifndef LIB_HISTORY_GLSL
 #define LIB_HISTORY_GLSL
 #include "shaders/history/history.h"

@@ -3,7 +3,7 @@
 #extension GL_EXT_scalar_block_layout : require
 #include "shaders/lib/signal.glsl"
 
-// Every pixel becomes what it shows of the light around it and before. One thread per pixel.
+// Turns every pixel's averaged signal back into light. One thread per pixel.
 
 layout(local_size_x = kRaysGroupSize) in;
 layout(push_constant, scalar) uniform Params { SignalParams params; };

@@ -5,8 +5,8 @@
 #include "shaders/lib/signal.glsl"
 #include "shaders/lib/view.glsl"
 
-// Gathers what filters and histories ask of a pixel: where its surface is and faces, where that was seen in the last picture, the
-// light it has, and how much it would reflect. One thread per pixel.
+// Collects the data of a pixel for filters and histories: position and normals of its surface, motion vector, light, reflectance.
+// One thread per pixel.
 
 layout(local_size_x = kRaysGroupSize) in;
 layout(push_constant, scalar) uniform Params { SignalParams params; };

@@ -1,4 +1,4 @@
-// A frame's light as signals: what filters and histories ask of a pixel. Shared by runtime/stages/{signals,history,denoise}.cpp
+// A frame's light as signals: the data of a pixel for filters and histories. Shared by runtime/stages/{signals,history,denoise}.cpp
 // and shaders/{signals,history,denoise}/*.
 #ifndef SHADERS_SIGNALS_H
 #define SHADERS_SIGNALS_H
@@ -7,7 +7,7 @@
 
 GPU_NAMESPACE_BEGIN
 
-struct SurfaceGuide // what tells whether two pixels see the same surface
+struct SurfaceGuide // by which filters and histories recognise pixels of the same surface
 {
     vec3 position; // metres, world
     uint normals;  // snorm 4 x 8: octahedral, the smooth one and the shading one

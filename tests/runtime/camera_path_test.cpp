@@ -1,4 +1,4 @@
-// Paths: where the camera is between keys, and what is said of files that are none.
+// Camera paths: interpolation between keys, and messages about invalid files.
 #include "format/vec3d.h"
 #include "runtime/camera_path.h"
 #include "runtime/path_recorder.h"

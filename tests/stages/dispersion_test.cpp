@@ -19,7 +19,7 @@ double channelReflectance(double ior, double eta, double cosine)
 }
 
 /// Red is bent least and blue most, each by the index that KHR_materials_dispersion gives it, into the body and out of it. Every
-/// draw stands for one channel, and the three are even.
+/// draw represents one channel, and the three are equally likely.
 TEST_F(Lobes, DispersionBendsBlueMost)
 {
     const double ior = 1.5, dispersion = 10;

@@ -128,7 +128,7 @@ TEST_F(Reuse, OfPhotonsChangesNothing)
     expectSamePicture("photons that are kept", kept, anew_at_once, 0.05);
     const auto standing = play({{kCamera, photons}, {kCamera, photons}, {kCamera, photons}}),
                anew = play({{kCamera, reusing(false)}, {kCamera, reusing(false)}, {kCamera, reusing(false)}});
-    EXPECT_TRUE(equalBits(standing.back().pixels, anew.back().pixels)) << "a standing picture";
+    EXPECT_TRUE(equalBits(standing.back().pixels, anew.back().pixels)) << "a static view";
     Settings fewer = photons;
     fewer.photon_count /= 2;
     expectFresh({{movedBy(-0.05f), photons}, {kCamera, fewer}}, "other settings");

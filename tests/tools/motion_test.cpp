@@ -44,7 +44,7 @@ TEST_F(MotionTest, MeasuresASequenceAndKeepsItsReferences)
     ASSERT_EQ(json["flicker"].size(), 3u);
     EXPECT_TRUE(json["flicker"][1].is_number());
     EXPECT_TRUE(json["flicker"][2].is_null()) << "three frames, none three apart";
-    // A path tracer remembers nothing: all lights and emissions are off at once.
+    // A path tracer has no history: all lights and emissions are off at once.
     EXPECT_EQ(json["ghost"], nlohmann::json({0.0, 0.0}));
     EXPECT_EQ(json["ghost_indirect"], nlohmann::json({0.0, 0.0}));
     EXPECT_TRUE(json["reprojected"].is_null());

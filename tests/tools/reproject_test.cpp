@@ -149,7 +149,7 @@ TEST(ReprojectTest, AMovingCameraUncoversTheWallBesideABox)
         gpu::Ray to_wall{before, 0, at + -1 * before, 0};
         const gpu::vec3 crossing = onPlane(to_wall, kBoxDistance);
         const bool covered = now.hits[i].slot == 0 && isOnBox(crossing);
-        // Within half a pixel of an edge the majority of four pixels may say otherwise.
+        // Within half a pixel of an edge the majority of four pixels may differ.
         const float margin = 0.71f * pixelSide(then.camera) * kBoxDistance;
         const float edge = std::max(std::abs(crossing.x), std::abs(crossing.y)) - kBoxSide / 2;
         if (now.hits[i].slot == 0 && std::abs(edge) < margin)

@@ -16,7 +16,7 @@ public:
     /// What a picture of that camera shows in its pixels' centres.
     FirstHits firstHits(const Camera& camera, uint32_t width, uint32_t height) const;
     /// For each hit whether its surface looks the same from everywhere but for highlights: it is no mirror, no glass
-    /// and not half transparent. By the materials' factors: textures are not looked at.
+    /// and not half transparent. By the materials' factors: textures are not read.
     std::vector<uint8_t> plainPixels(const FirstHits& hits) const;
 
 private:

@@ -5,7 +5,7 @@
 #include <array>
 #include <optional>
 
-struct Ghost // shares of the light of the last frame that was lit; nothing where it had none, or was not measured
+struct Ghost // fractions of the light of the last frame that was lit; nothing where it had none, or was not measured
 {
     using Shares = std::array<std::optional<double>, 2>;
     static constexpr std::array<uint32_t, 2> kFrames{1, 4}; // after that one

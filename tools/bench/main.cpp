@@ -65,7 +65,7 @@ void addPackageCommands(CLI::App& app, CommandLine& line)
 
     CLI::App* converge = addPackageCommand(app, "converge", "seconds and errors against a reference after 1, 2, 4, ... frames", line.converge);
     addSettings(converge, line);
-    converge->add_option("reference", line.converge.reference, "the picture taken as right (.exr); its size is rendered")->required();
+    converge->add_option("reference", line.converge.reference, "the picture taken as correct (.exr); its size is rendered")->required();
     converge->add_option("--mode", line.converge.mode, "what to render")->check(CLI::IsMember({"gi", "reference"}))->capture_default_str();
     converge->add_option("--frames", line.converge.frames, "frames of a run")->check(CLI::Range(1, 1 << 20))->capture_default_str();
     converge->add_option("--seeds", line.converge.seeds, "runs to average over")->check(CLI::Range(1, 1000))->capture_default_str();
@@ -91,14 +91,14 @@ void addMotion(CLI::App& app, CommandLine& line)
     addSize(motion, line);
     addSettings(motion, line);
     motion->add_option("--path", options.path, "how the camera moves: sway, orbit, or a file with a camera path")->capture_default_str();
-    motion->add_option("--frames", options.frames, "frames that are judged")->check(CLI::Range(1, 100000))->capture_default_str();
+    motion->add_option("--frames", options.frames, "measured frames")->check(CLI::Range(1, 100000))->capture_default_str();
     motion->add_option("--fps", options.frames_per_second, "frames a second of the path")->check(CLI::Range(1e-3, 1e6))->capture_default_str();
     motion->add_option("--warm-up", options.warm_up, "frames before them, on the same path")->check(CLI::Range(0, 100000))->capture_default_str();
     motion->add_option("--spp", options.sample_count, "samples a pixel of the references")->check(CLI::Range(1, 1 << 20))->capture_default_str();
-    motion->add_option("--mode", options.mode, "what is judged")->check(CLI::IsMember({"gi", "direct", "reference"}))->capture_default_str();
-    motion->add_flag("--ghost,!--no-ghost", options.ghost, "what is left after all lights are off, which takes as long again; default yes");
-    motion->add_option("--seed", options.seed, "another number, other noise")->capture_default_str();
-    motion->add_option("--cache", options.cache, "folder that keeps references for the next time; default in the user's cache folder");
+    motion->add_option("--mode", options.mode, "what to measure")->check(CLI::IsMember({"gi", "direct", "reference"}))->capture_default_str();
+    motion->add_flag("--ghost,!--no-ghost", options.ghost, "measure the light left after all lights are off, which doubles the time; default yes");
+    motion->add_option("--seed", options.seed, "seed of all random numbers")->capture_default_str();
+    motion->add_option("--cache", options.cache, "folder of cached references; default in the user's cache folder");
     motion->add_option("--dump", options.dump, "folder for each frame, its reference and its FLIP map (.png)");
 }
 
@@ -110,7 +110,7 @@ void addPrimitives(CLI::App& app, PrimitiveBenchOptions& options)
         ->check(CLI::Range(16, 1 << 26))
         ->capture_default_str();
     primitives->add_option("--repeats", options.repeats, "timed runs of each kind")->check(CLI::Range(1, 1000))->capture_default_str();
-    primitives->add_option("--workers", options.workers, "who takes a share of the work")
+    primitives->add_option("--workers", options.workers, "what processes a part of the work: workgroups or single threads")
         ->check(CLI::IsMember({"auto", "groups", "threads"}))
         ->capture_default_str();
     primitives->add_option("--device", options.device, "index, part of a name, or cpu; default the best suitable one");

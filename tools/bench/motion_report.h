@@ -8,10 +8,10 @@
 struct MotionResult
 {
     SequenceMetrics metrics;
-    Mean plain; // share of a frame's pixels that SequenceFrame::plain has
+    Mean plain; // fraction of a frame's pixels in SequenceFrame::plain
     Ghost ghost{};
-    std::optional<double> reprojected; // share of pixels with a history; none: the renderer keeps none
-    StageSamples stages;               // of the frames that are judged
+    std::optional<double> reprojected; // fraction of pixels with a history; nothing if the renderer keeps none
+    StageSamples stages;               // of the measured frames
 };
 
 void printJson(const MotionBenchOptions& options, const OpenedPackage& opened, const MotionResult& result);

@@ -3,7 +3,7 @@
 #include "runtime/camera.h"
 
 /// The given view swaying: 5 degrees to either side, the eye on a circle of 1/400 of the scene's diagonal, 120 frames a
-/// round; no two successive frames see the same. At frame 0 it is the given view.
+/// round; no two successive frames are the same. At frame 0 it is the given view.
 Camera movedCamera(const Camera& camera, const gpu::SceneInfo& info, float frame);
 
 /// The given view walking around what lies |radius| metres before it, 20 degrees a second, always facing it; to the right

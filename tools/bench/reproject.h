@@ -1,4 +1,4 @@
-// Where what one picture shows was seen in another one, by geometry alone: no renderer has a say in it.
+// Reprojection from one picture to another by geometry alone, independent of any renderer.
 #pragma once
 #include "image/image.h"
 #include "runtime/camera.h"

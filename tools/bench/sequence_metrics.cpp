@@ -27,7 +27,7 @@ void SequenceMetrics::compare(const SequenceFrame& frame, size_t distance, const
     const SequenceFrame& then = last_[distance - 1];
     check(frame.plain.size() == frame.hits.hits.size(), "{} of {} pixels", frame.plain.size(), frame.hits.hits.size());
     const std::vector<PicturePoint> places = reproject(frame.hits, then.hits);
-    // Pixels that were not seen keep what they show, so that FLIP's filters bring nothing of them to their neighbours.
+    // Pixels that were not seen keep what they show, so that FLIP's filters spread no difference from them to their neighbours.
     const FlipMap pictures = ldrFlip(frame.picture, warp(then.picture, places, frame.picture));
     const FlipMap references = ldrFlip(frame.reference, warp(then.reference, places, frame.reference));
     for (size_t i = 0; i < places.size(); ++i)
