@@ -53,7 +53,8 @@ failed=0
 
 # row SCENE PRESET PATH: set `package` first.
 row() {
-    local result folder=$out/motion/$1-$2-$(basename "$3")
+    local result folder
+    folder=$out/motion/$1-$2-$(basename "$3")
     local -a extra=()
     ((!dump)) || extra=(--dump "$folder")
     result=$("$bin/lumicut-bench" motion "$package" --path "$3" --preset "$2" --frames "$frames" --cache "$out/references" \

@@ -121,3 +121,23 @@ TEST(SequenceMetricsTest, PlainPixelsAreCountedApart)
     EXPECT_NEAR(metrics.plainFlicker(1).value(), 0, kRounding);
     EXPECT_EQ(metrics.plainFlicker(1).pictures.count, 3u * kWidth);
 }
+
+TEST(SequenceMetricsTest, PixelsNearACausticAreNotPlain)
+{
+    ImageF caustics = grey(0);
+    const uint32_t spot_x = 1, spot_y = 20;
+    // One channel of one pixel in a block of at most 7 x 7 with 0.5 in each channel: 0.9 of at most 73.5, more than a
+    // hundredth.
+    caustics.rgb[3 * (spot_y * kWidth + spot_x)] = 0.9f;
+    std::vector<uint8_t> plain(kPixels, 1);
+    plain[0] = 0;
+    excludeCaustics(plain, grey(0.5f), caustics);
+    for (uint32_t i = 0; i < kPixels; ++i)
+    {
+        const uint32_t x = i % kWidth, y = i / kWidth;
+        const bool near = x <= spot_x + 3 && y + 3 >= spot_y && y <= spot_y + 3;
+        EXPECT_EQ(plain[i] != 0, !near && i != 0) << x << ", " << y;
+    }
+    excludeCaustics(plain, grey(0.5f), grey(0.004f)); // less than a hundredth
+    EXPECT_NE(plain[5], 0);
+}

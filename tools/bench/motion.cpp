@@ -77,27 +77,6 @@ private:
     Recorder rec_;
 };
 
-/// Takes the pixels out of `plain` around which caustics are more than a hundredth of the light.
-void excludeCaustics(std::vector<uint8_t>& plain, const ImageF& all, const ImageF& caustics)
-{
-    constexpr float kShare = 0.01f;
-    constexpr uint32_t kReach = 3; // pixels: the caustics' picture is noisy
-    for (uint32_t y = 0; y < all.height; ++y)
-        for (uint32_t x = 0; x < all.width; ++x)
-        {
-            float light = 0, caustic = 0;
-            for (uint32_t row = y - std::min(y, kReach); row <= std::min(y + kReach, all.height - 1); ++row)
-                for (uint32_t i = 3 * (row * all.width + x - std::min(x, kReach));
-                     i < 3 * (row * all.width + std::min(x + kReach, all.width - 1) + 1); ++i)
-                {
-                    light += all.rgb[i];
-                    caustic += caustics.rgb[i];
-                }
-            if (caustic > kShare * light)
-                plain[size_t(y) * all.width + x] = 0;
-        }
-}
-
 Status dumpFrame(const std::filesystem::path& folder, uint32_t number, const SequenceFrame& frame, const FlipMap& flip)
 {
     const auto write = [&](const char* name, const Picture& picture)

@@ -2,6 +2,8 @@
 
 #include "format/check.h"
 
+#include <algorithm>
+
 FlipMap SequenceMetrics::add(SequenceFrame frame)
 {
     FlipMap flip = ldrFlip(frame.reference, frame.picture);
@@ -48,4 +50,26 @@ void SequenceMetrics::compare(const SequenceFrame& frame, size_t distance, const
     }
     if (distance == 1)
         pixel_count_ += places.size();
+}
+
+void excludeCaustics(std::vector<uint8_t>& plain, const ImageF& all, const ImageF& caustics)
+{
+    check(plain.size() == all.pixelCount() && plain.size() == caustics.pixelCount(), "{}, {} and {} pixels",
+          plain.size(), all.pixelCount(), caustics.pixelCount());
+    constexpr float kShare = 0.01f;
+    constexpr uint32_t kReach = 3; // pixels
+    for (uint32_t y = 0; y < all.height; ++y)
+        for (uint32_t x = 0; x < all.width; ++x)
+        {
+            float light = 0, caustic = 0;
+            for (uint32_t row = y - std::min(y, kReach); row <= std::min(y + kReach, all.height - 1); ++row)
+                for (uint32_t i = 3 * (row * all.width + x - std::min(x, kReach));
+                     i < 3 * (row * all.width + std::min(x + kReach, all.width - 1) + 1); ++i)
+                {
+                    light += all.rgb[i];
+                    caustic += caustics.rgb[i];
+                }
+            if (caustic > kShare * light)
+                plain[size_t(y) * all.width + x] = 0;
+        }
 }

@@ -28,6 +28,10 @@ struct SequenceFrame
                                 // otherwise than the surface that it is in
 };
 
+/// Takes the pixels out of `plain` around which, three pixels far, caustics are more than a hundredth of the light:
+/// their picture may be noisy. All are of one size.
+void excludeCaustics(std::vector<uint8_t>& plain, const ImageF& all, const ImageF& caustics);
+
 /// Mean LDR-FLIP between a frame and an earlier one warped onto it, over the pixels that were seen then.
 struct Flicker
 {
