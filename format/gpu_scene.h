@@ -1,4 +1,5 @@
-// The scene as it lies in a package and as shaders read it: one definition for compiler, player and GLSL.
+// The scene as shaders read it: one definition for compiler, player and GLSL. So it lies in a package, too, but for geometry,
+// which a package stores in less space (stored_geometry.h).
 // Scalar layout. World space is glTF's: right-handed, +Y up, in units of length of the package
 // (META's unit, 1 m nearly always), which stand for metres throughout. Radiometry is SI, RGB linear Rec. 709.
 #ifndef FORMAT_GPU_SCENE_H

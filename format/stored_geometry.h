@@ -1,6 +1,6 @@
 // Geometry as a package stores it. Shaders read a triangle's corners, material and flags with every leaf that holds it, and
-// boxes as floats; a package has each vertex and triangle once, and boxes relative to the box around them. A reader unfolds
-// that into the arrays of gpu_scene.h, which takes a third of the time that reading those from a disk would.
+// boxes as floats; a package has each vertex and triangle once, and boxes relative to the box around them. The reader unfolds
+// that into the arrays of gpu_scene.h.
 #pragma once
 #include "format/gpu_scene.h"
 
