@@ -10,6 +10,7 @@
 #include <GLFW/glfw3.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace
@@ -38,8 +39,8 @@ class WindowedPlayer
 {
 public:
     WindowedPlayer(const PlayerOptions& options, Window& window, const OpenedScene& opened, Swapchain& swapchain)
-        : options_(options), settings_(opened.settings), window_(window), opened_(opened), swapchain_(swapchain), rec_(*opened.device),
-          overlay_(window, opened.instance, *opened.device, swapchain, rec_), fly_(opened.camera, sceneSize(*opened.scene)), follows_path_(opened.path.has_value())
+        : options_(options), settings_(opened.settings), window_(window), opened_(opened), swapchain_(swapchain),
+          flights_{Flight(*opened.device), Flight(*opened.device)}, overlay_(window, opened.instance, *opened.device, swapchain, flights_[0].rec), fly_(opened.camera, sceneSize(*opened.scene)), follows_path_(opened.path.has_value())
     {
     }
 
@@ -53,6 +54,13 @@ private:
     void jump(const Camera& camera);
     void moveCamera(float seconds);
     void usePanel();
+    struct Flight // a frame that the GPU may still be at
+    {
+        explicit Flight(const Device& device) : rec(device) {}
+        Recorder rec;
+        bool submitted = false;
+    };
+    void land(Flight& flight, Statistics& statistics);
     void showFrame(Statistics& statistics);
     bool finished(uint32_t frames) const;
     Status makeRenderer();
@@ -62,7 +70,8 @@ private:
     Window& window_;
     const OpenedScene& opened_;
     Swapchain& swapchain_;
-    Recorder rec_;
+    std::array<Flight, kFramesInFlight> flights_;
+    uint32_t turn_ = 0; // of flights_
     WindowOverlay overlay_;
     FlyCamera fly_;
     bool follows_path_;
@@ -78,6 +87,7 @@ private:
 
 Status WindowedPlayer::makeRenderer()
 {
+    opened_.device->waitIdle(); // frames in flight use the one there is
     const VkExtent2D extent = swapchain_.extent();
     return ::makeRenderer(renderer_, opened_, options_.mode, extent.width, extent.height, settings_);
 }
@@ -202,24 +212,34 @@ void WindowedPlayer::usePanel()
 /// Renders and shows one frame; an image is acquired.
 void WindowedPlayer::showFrame(Statistics& statistics)
 {
-    rec_.begin(opened_.scene->descriptorSet());
+    Recorder& rec = flights_[turn_].rec;
+    rec.begin(opened_.scene->descriptorSet());
     {
-        const auto scope = rec_.scope("frame");
-        renderer_->record(rec_, fly_.camera(), settings_, options_.seed, renderer_->maxBatch());
-        const Buffer& pixels = renderer_->display(rec_, settings_, swapchain_.bgra());
-        const auto shown = rec_.scope("show");
-        swapchain_.beginOverlay(rec_.commands(), pixels);
-        overlay_.draw(rec_.commands());
-        swapchain_.endOverlay(rec_.commands());
+        const auto scope = rec.scope("frame");
+        renderer_->record(rec, fly_.camera(), settings_, options_.seed, renderer_->maxBatch());
+        const Buffer& pixels = renderer_->display(rec, settings_, swapchain_.bgra());
+        const auto shown = rec.scope("show");
+        swapchain_.beginOverlay(rec.commands(), pixels);
+        overlay_.draw(rec.commands());
+        swapchain_.endOverlay(rec.commands());
     }
-    if (statistics.frames.empty())
+    if (statistics.first_submit_ms == 0)
     {
         statistics.first_submit_ms = statistics.elapsedMs();
         statistics.pipeline_ms = opened_.device->pipelineMs();
     }
-    rec_.submit(swapchain_.acquired(), swapchain_.rendered());
+    rec.submit(swapchain_.acquired(), swapchain_.rendered());
+    flights_[turn_].submitted = true;
     swapchain_.present();
-    stages_ = rec_.wait();
+    turn_ = (turn_ + 1) % kFramesInFlight;
+}
+
+/// Waits for a frame, and takes its times.
+void WindowedPlayer::land(Flight& flight, Statistics& statistics)
+{
+    if (!std::exchange(flight.submitted, false))
+        return;
+    stages_ = flight.rec.wait();
     statistics.addFrame(stages_);
 }
 
@@ -235,6 +255,7 @@ Status WindowedPlayer::play(Statistics& statistics)
     for (uint32_t frames = 0; !finished(frames);)
     {
         window_.poll(!drawable);
+        land(flights_[turn_], statistics);
         drawable = swapchain_.acquire();
         if (!drawable)
         {
@@ -257,6 +278,8 @@ Status WindowedPlayer::play(Statistics& statistics)
     }
     if (recorder_)
         toggleRecording();
+    for (uint32_t i = 0; i < kFramesInFlight; ++i)
+        land(flights_[(turn_ + i) % kFramesInFlight], statistics);
     if (!renderer_) // closed before anything could be seen
         return Success{};
     return writeResults(options_, opened_, *renderer_, settings_, statistics);

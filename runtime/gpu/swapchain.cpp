@@ -73,7 +73,8 @@ Result<std::unique_ptr<Swapchain>> Swapchain::create(const Instance& instance, c
     if (const Status status = swapchain->choose(); !status)
         return status.error();
     swapchain->createOverlayPass();
-    swapchain->acquired_ = semaphore(device);
+    for (VkSemaphore& acquired : swapchain->acquired_)
+        acquired = semaphore(device);
     return swapchain;
 }
 
@@ -81,7 +82,8 @@ Swapchain::~Swapchain()
 {
     device_.waitIdle();
     destroyFrames();
-    vkDestroySemaphore(device_.handle(), acquired_, nullptr);
+    for (const VkSemaphore acquired : acquired_)
+        vkDestroySemaphore(device_.handle(), acquired, nullptr);
     vkDestroyRenderPass(device_.handle(), overlay_pass_, nullptr);
     vkDestroySwapchainKHR(device_.handle(), swapchain_, nullptr);
     vkDestroySurfaceKHR(instance_.handle(), surface_, nullptr);
@@ -235,8 +237,9 @@ bool Swapchain::acquire()
 {
     if (!swapchain_ || stale_)
         return false;
+    turn_ = (turn_ + 1) % kFramesInFlight;
     const VkResult result =
-        vkAcquireNextImageKHR(device_.handle(), swapchain_, UINT64_MAX, acquired_, VK_NULL_HANDLE, &current_);
+        vkAcquireNextImageKHR(device_.handle(), swapchain_, UINT64_MAX, acquired_[turn_], VK_NULL_HANDLE, &current_);
     stale_ = result == VK_SUBOPTIMAL_KHR; // this image still is ours to show
     return fits(result);
 }

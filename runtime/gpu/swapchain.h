@@ -2,7 +2,12 @@
 #pragma once
 #include "runtime/gpu/device.h"
 
-/// One frame is in flight at most: the caller waits for a frame before the next acquire().
+#include <array>
+
+/// Frames that the GPU may be at while the CPU makes the next.
+constexpr uint32_t kFramesInFlight = 2;
+
+/// kFramesInFlight frames are in flight at most: the caller waits for the frame that many before, before it calls acquire().
 class Swapchain
 {
 public:
@@ -30,7 +35,7 @@ public:
     /// the acquired image and begins the overlay pass on it.
     void beginOverlay(VkCommandBuffer commands, const Buffer& pixels) const;
     void endOverlay(VkCommandBuffer commands) const;
-    VkSemaphore acquired() const { return acquired_; }
+    VkSemaphore acquired() const { return acquired_[turn_]; }
     VkSemaphore rendered() const { return frames_[current_].rendered; }
     /// Shows the acquired image once rendered() is signalled. @return false as acquire()
     bool present();
@@ -57,7 +62,8 @@ private:
     VkExtent2D extent_{};
     VkSwapchainKHR swapchain_ = VK_NULL_HANDLE;
     VkRenderPass overlay_pass_ = VK_NULL_HANDLE;
-    VkSemaphore acquired_ = VK_NULL_HANDLE;
+    std::array<VkSemaphore, kFramesInFlight> acquired_{}; // used in turn
+    uint32_t turn_ = 0;
     std::vector<Frame> frames_;
     uint32_t current_ = 0;
     bool stale_ = false;
