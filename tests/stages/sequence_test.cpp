@@ -168,7 +168,8 @@ TEST_F(RememberingSequence, LayersAddUpToThePicture)
     const std::vector<std::string> names(kLayerNames.begin(), kLayerNames.end());
     ASSERT_TRUE(capture(folder_ / "layers.exr", *renderer, *opened_->device, *opened_->scene, settings, names));
     const std::string bytes = fileBytes(folder_ / "layers.exr");
-    for (const char* channel : {"R", "Z", "albedo.R", "caustics.G", "direct.B", "emission.R", "glossy.R", "indirect.R", "normal.X"})
+    for (const char* channel :
+         {"R", "Z", "albedo.R", "caustics.G", "direct.B", "emission.R", "glossy.R", "indirect.R", "normal.X"})
         EXPECT_TRUE(contains(bytes, std::string(1, '\0') + channel + std::string(1, '\0'))) << channel;
     const auto read = readExr(folder_ / "layers.exr");
     ASSERT_TRUE(read) << read.error().message;
