@@ -2,11 +2,23 @@
 #pragma once
 #include "runtime/renderer.h"
 
+#include <array>
 #include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
 
 /// Whether `path` ends in a picture format the player writes. @return kUsage naming the formats
 Status checkPicturePath(const std::filesystem::path& path);
 
+/// What an .exr can hold: the picture (channels R, G, B), its terms (direct.R, ...), what even light would show of the surface
+/// (albedo.R, ...), its normal in the world (normal.X, ...), and metres from the eye along the way of the light (Z; the sky is
+/// infinitely far). Of pictures of many samples they are means; of the depth the last sample.
+inline constexpr std::array<std::string_view, 9> kLayerNames{"beauty", "emission", "direct", "caustics", "indirect",
+                                                             "glossy", "albedo",   "normal", "depth"};
+
 /// Writes the picture so far: .exr linear radiance, 32-bit; .png exposed and tone-mapped.
+/// @param layers of kLayerNames, in place of the picture alone; only of .exr, and renderer.keepLayers() came before
 Status capture(const std::filesystem::path& path, Renderer& renderer, const Device& device, const SceneGpu& scene,
-               const Settings& settings);
+               const Settings& settings, std::span<const std::string> layers = {});

@@ -151,6 +151,8 @@ const Buffer& GlobalIllumination::record(Recorder& rec, const RayStage& rays, co
     if (plan.denoise_passes > 0 || plan.remembers || plan.antialiases)
         recordSignals(c);
     const Buffer& picture = compose_.record(rec, light_, plan, width_ * height_, point_count_);
+    if (layers_)
+        layers_->record(rec, frame, surface, light_, plan.lightTerms());
     if (settings.view != gpu::kViewNone)
         recordView(c, picture);
     return picture;

@@ -12,6 +12,7 @@
 #include "runtime/stages/guide.h"
 #include "runtime/stages/history.h"
 #include "runtime/stages/interpolate.h"
+#include "runtime/stages/layers.h"
 #include "runtime/stages/primary.h"
 #include "runtime/stages/view_scale.h"
 #include "runtime/stages/views.h"
@@ -41,6 +42,10 @@ public:
     }
     /// gpu::Motion[width * height] of the last frame whose plan antialiases.
     const Buffer& motions() const { return signals_->motions(); }
+    /// From now on record() keeps the layers of its pictures, but of views.
+    void keepLayers(const Device& device) { layers_.emplace(device, scene_, width_ * height_); }
+    /// gpu::LayerSums[width * height] over the frames of the picture so far.
+    const Buffer& layerSums() const { return layers_->sums(); }
     /// Share of the pixels that went on from a history in the last frame, none where it kept none; waits for the device.
     std::optional<double> rememberedShare(const Device& device) const;
     /// Of the last frame; waits for the device.
@@ -100,6 +105,7 @@ private:
     std::optional<HistoryStage> history_;
     std::optional<DenoiseStage> denoise_;
     ComposeStage compose_;
+    std::optional<LayersStage> layers_; // where they are asked for
     ViewsStage views_;
     gpu::vec3 map_camera_{};                            // where the camera was when the global map was made
     std::optional<MapOrigin> global_map_, caustic_map_; // that lie in the stages' buffers

@@ -30,7 +30,9 @@ Status playHeadless(const PlayerOptions& options)
     if (!opened)
         return opened.error();
     std::optional<Renderer> renderer;
-    if (const Status status = makeRenderer(renderer, *opened, options.mode, options.width, options.height, opened->settings); !status)
+    if (const Status status = makeRenderer(renderer, *opened, options.mode, options.width, options.height,
+                                           opened->settings, !options.layers.empty());
+        !status)
         return status;
     statistics.pipeline_ms = opened->device->pipelineMs();
     Recorder rec(*opened->device);

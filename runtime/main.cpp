@@ -108,6 +108,9 @@ Status checkOptions(const PlayerOptions& options)
     const auto settings = makeSettings(options.preset.empty() ? "default" : options.preset, options.assignments);
     if (!settings)
         return settings.error();
+    if (!options.layers.empty() && (!options.headless || options.output.extension() != ".exr" || options.mode != Mode::kGi ||
+                                    settings->view != gpu::kViewNone))
+        return Error{ExitCode::kUsage, "--layers are of pictures of mode gi: --headless --output FILE.exr, and no view"};
     if (options.mode != Mode::kGi && settings->view != gpu::kViewNone)
         return Error{ExitCode::kUsage, "views show the inside of mode gi; choose --mode gi or leave the view out"};
     if (settings->view == gpu::kViewError && options.against.empty())
@@ -137,6 +140,10 @@ int main(int argc, char** argv)
         ->check(CLI::Range(1u, UINT32_MAX));
     app.add_option("--output", options.output,
                    "picture to write at the end: .exr (linear) or .png; of a sequence as frame-%04d.exr");
+    app.add_option("--layers", options.layers, "what an .exr of mode gi holds, a list with commas; default the picture alone")
+        ->delimiter(',')
+        ->allow_extra_args(false) // else it takes the package after it
+        ->check(CLI::IsMember(std::vector<std::string>(kLayerNames.begin(), kLayerNames.end())));
     app.add_option("--path", options.path, "camera path (.json) to follow; in a window until a key or the mouse moves the camera");
     const CLI::Option* sequence_options[] = {
         app.add_option("--fps", options.fps, "frames a second of the path, of a sequence")

@@ -108,12 +108,14 @@ Result<OpenedScene> openScene(const PlayerOptions& options, std::span<const char
 }
 
 Status makeRenderer(std::optional<Renderer>& renderer, const OpenedScene& opened, Mode mode, uint32_t width, uint32_t height,
-                    const Settings& settings)
+                    const Settings& settings, bool layers)
 {
     renderer.reset(); // its memory first
     if (const Status status = Renderer::checkSize(*opened.device, width, height, mode, settings); !status)
         return status;
     renderer.emplace(*opened.device, *opened.scene, mode, width, height, settings);
+    if (layers)
+        renderer->keepLayers(*opened.device);
     if (!opened.against.pixels.empty())
         renderer->compareWith(*opened.device, opened.against.pixels, opened.against.width, opened.against.height);
     return Success{};
@@ -134,7 +136,7 @@ Status writeResults(const PlayerOptions& options, const OpenedScene& opened, Ren
     }
     fmt::print(stderr, "{}\n", statistics.summary());
     if (!options.output.empty())
-        if (const Status status = capture(options.output, renderer, *opened.device, *opened.scene, settings); !status)
+        if (const Status status = capture(options.output, renderer, *opened.device, *opened.scene, settings, options.layers); !status)
             return status.error().about(options.output.string());
     if (!options.stats.empty())
         if (const Status status = statistics.writeJson(options.stats); !status)

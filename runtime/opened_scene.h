@@ -36,8 +36,9 @@ Result<OpenedScene> openScene(const PlayerOptions& options, std::span<const char
 
 /// A renderer for pictures of that size, with what its view error compares with.
 /// @return kDevice where they are too large for the device, leaving `renderer` empty
+/// @param layers whether it keeps the layers of its pictures
 Status makeRenderer(std::optional<Renderer>& renderer, const OpenedScene& opened, Mode mode, uint32_t width, uint32_t height,
-                    const Settings& settings);
+                    const Settings& settings, bool layers = false);
 
 /// Prints the summary on stderr, and writes --output and --stats if given.
 Status writeResults(const PlayerOptions& options, const OpenedScene& opened, Renderer& renderer, const Settings& settings,

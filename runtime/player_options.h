@@ -22,6 +22,7 @@ struct PlayerOptions
     bool force = false;                   // renders frames again that are there
     bool list_missing = false;            // prints the numbers of frames that are not there, and renders nothing
     std::filesystem::path output; // .exr or .png, of a sequence with a place for the number; empty: none
+    std::vector<std::string> layers;  // of kLayerNames, that an .exr holds; empty: the picture alone
     Mode mode = Mode::kGi;
     std::string camera; // name or index; empty: the first
     uint32_t seed = 0;

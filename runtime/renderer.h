@@ -49,6 +49,13 @@ public:
     uint32_t height() const { return height_; }
     /// Mean linear radiance, or the colours of the view, vec3[width * height] rows from the top; waits for the device.
     std::vector<gpu::vec3> picture(const Device& device) const;
+    /// In Mode::kGi: frames recorded from now on keep their layers.
+    void keepLayers(const Device& device) { gi_->keepLayers(device); }
+    /// Sums over sampleCount() frames, [width * height]; waits for the device. keepLayers() came before.
+    std::vector<gpu::LayerSums> layerSums(const Device& device) const
+    {
+        return device.download<gpu::LayerSums>(gi_->layerSums(), uint64_t(width_) * height_);
+    }
     /// Samples left out because they were NaN or infinite.
     uint32_t nonFiniteCount(const Device& device) const;
     /// What the photon map of the last frame in Mode::kGi holds; waits for the device.

@@ -13,28 +13,15 @@
 
 namespace
 {
-// A renderer remembers earlier frames, and a frame must come out the same whether they were rendered in this run or
-// not. So sequences are cut into blocks at fixed numbers. A block is begun with a new renderer, which renders some
-// frames before the first, and throws those pictures away; frames of a block come in order, whichever of them are asked
-// for.
-//
-// kWarmUp frames more for every kBlock: a quarter more work, and after an interruption at most 39 frames are rendered
-// again. Where a remembered frame's weight falls to w in each frame after it, w^kWarmUp of all weight lies before the
-// warm-up and is missing at the block's start: 1/256 at w = 1/2, a tenth at 3/4, a third at 7/8. The frame there is
-// that much noisier, not darker, as the weights of the others grow. Shorter blocks would cost more and show more such
-// starts.
-constexpr int64_t kBlock = 32;
-constexpr int64_t kWarmUp = 8;
-
 /// Renders frames of one sequence.
 class Sequence
 {
 public:
     /// @param frame_count that render() will be given
     Sequence(const PlayerOptions& options, const OpenedScene& opened, const FrameFiles& files, size_t frame_count,
-             Statistics& statistics)
-        : options_(options), opened_(opened), files_(files), frame_count_(frame_count), statistics_(statistics),
-          rec_(*opened.device)
+             const SequenceParts& parts, Statistics& statistics)
+        : options_(options), opened_(opened), files_(files), frame_count_(frame_count), parts_(parts),
+          statistics_(statistics), rec_(*opened.device)
     {
     }
 
@@ -45,7 +32,7 @@ public:
 
 private:
     Status begin();
-    Status renderBlock(std::span<const uint32_t> frames);
+    Status renderPart(std::span<const uint32_t> frames);
     Status renderStanding(uint32_t frame);
     Status renderSamples(int64_t frame, uint32_t sample_count);
     Status write(uint32_t frame);
@@ -54,6 +41,7 @@ private:
     const OpenedScene& opened_;
     const FrameFiles& files_;
     size_t frame_count_, written_ = 0; // that are to be written, and are
+    SequenceParts parts_;
     Statistics& statistics_;
     Recorder rec_;
     std::optional<Renderer> renderer_;
@@ -62,8 +50,8 @@ private:
 /// A renderer that remembers nothing.
 Status Sequence::begin()
 {
-    if (const Status status =
-            makeRenderer(renderer_, opened_, options_.mode, options_.width, options_.height, opened_.settings);
+    if (const Status status = makeRenderer(renderer_, opened_, options_.mode, options_.width, options_.height,
+                                           opened_.settings, !options_.layers.empty());
         !status)
         return status;
     statistics_.pipeline_ms = opened_.device->pipelineMs();
@@ -83,20 +71,22 @@ Status Sequence::renderSamples(int64_t frame, uint32_t sample_count)
 Status Sequence::write(uint32_t frame)
 {
     const std::filesystem::path path = files_.of(frame);
-    if (const Status status = capture(path, *renderer_, *opened_.device, *opened_.scene, opened_.settings); !status)
+    if (const Status status =
+            capture(path, *renderer_, *opened_.device, *opened_.scene, opened_.settings, options_.layers);
+        !status)
         return status.error().about(path.string());
     fmt::print(stderr, "{} ({} of {})\n", path.string(), ++written_, frame_count_);
     return Success{};
 }
 
-/// @param frames of one block, ascending
-Status Sequence::renderBlock(std::span<const uint32_t> frames)
+/// @param frames of one part, ascending
+Status Sequence::renderPart(std::span<const uint32_t> frames)
 {
     if (const Status status = begin(); !status)
         return status;
-    const int64_t block = frames.front() / kBlock * kBlock;
-    const int64_t warm_up = options_.mode == Mode::kReference ? 0 : kWarmUp; // path tracing remembers nothing
-    for (int64_t frame = block - warm_up; frame <= frames.back(); ++frame)
+    const int64_t part = frames.front() / parts_.frames * parts_.frames;
+    const int64_t warm_up = options_.mode == Mode::kGi ? parts_.warm_up : 0; // other modes remember nothing
+    for (int64_t frame = part - warm_up; frame <= frames.back(); ++frame)
     {
         if (const Status status = renderSamples(frame, 1); !status)
             return status;
@@ -125,9 +115,9 @@ Status Sequence::render(std::span<const uint32_t> frames)
     while (!frames.empty())
     {
         const bool standing = options_.sample_count > 0;
-        const auto same_block = [&](uint32_t frame) { return frame / kBlock == frames.front() / kBlock; };
-        const size_t count = standing ? 1 : size_t(std::ranges::find_if_not(frames, same_block) - frames.begin());
-        const Status status = standing ? renderStanding(frames.front()) : renderBlock(frames.first(count));
+        const auto same_part = [&](uint32_t frame) { return frame / parts_.frames == frames.front() / parts_.frames; };
+        const size_t count = standing ? 1 : size_t(std::ranges::find_if_not(frames, same_part) - frames.begin());
+        const Status status = standing ? renderStanding(frames.front()) : renderPart(frames.first(count));
         if (!status)
             return status;
         frames = frames.subspan(count);
@@ -163,6 +153,15 @@ Status leaveAlone(const PlayerOptions& options, const Statistics& statistics)
 }
 } // namespace
 
+Status renderFrames(const PlayerOptions& options, const OpenedScene& opened, const FrameFiles& files,
+                    std::span<const uint32_t> frames, Statistics& statistics, const SequenceParts& parts)
+{
+    Sequence sequence(options, opened, files, frames.size(), parts, statistics);
+    const Status rendered = sequence.render(frames);
+    const Status written = sequence.writeResults();
+    return rendered ? written : rendered;
+}
+
 Status playSequence(const PlayerOptions& options)
 {
     const auto files = FrameFiles::parse(options.output);
@@ -184,8 +183,5 @@ Status playSequence(const PlayerOptions& options)
     const auto opened = openScene(options, {}, statistics);
     if (!opened)
         return opened.error();
-    Sequence sequence(options, *opened, *files, frames->size(), statistics);
-    const Status rendered = sequence.render(*frames);
-    const Status written = sequence.writeResults();
-    return rendered ? written : rendered;
+    return renderFrames(options, *opened, *files, *frames, statistics);
 }

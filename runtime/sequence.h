@@ -1,6 +1,7 @@
 // Pictures of a moving camera, frame by frame, each into a file of its own.
 #pragma once
-#include "runtime/player_options.h"
+#include "runtime/frame_files.h"
+#include "runtime/opened_scene.h"
 
 /// Renders options.sequence along options.path: frame i shows the path at i / options.fps seconds. Frames that are
 /// there and whole are left as they are (but with options.force); with options.list_missing the numbers of the others
@@ -8,3 +9,20 @@
 /// device a frame's bytes do not depend on which others are rendered, or when.
 /// @return ExitCode(128 + N) where signal N ended it; what is written by then is whole and stays
 Status playSequence(const PlayerOptions& options);
+
+/// How a sequence is cut into parts that do not depend on each other: parts of `frames`, from multiples of that number on, each
+/// rendered by a new renderer with `warm_up` frames before them whose pictures are thrown away.
+///
+/// A renderer remembers earlier frames, and a frame must come out the same whether those were rendered in this run or not.
+/// warm_up / frames is what that costs, a quarter, and a run that begins within a part renders up to 79 frames more. With
+/// history.frames=32 a pixel is the mean of up to 33 frames, or as even as one of 65 since the weights fade; at a part's start it
+/// is that of 17: noisier by sqrt(65 / 17) = 1.95, not darker, and less with every frame. Without warming up it would be by 8.
+struct SequenceParts
+{
+    int64_t frames = 64;
+    int64_t warm_up = 16;
+};
+
+/// Renders `frames`, ascending, of options.sequence into `files`, as playSequence() says of them.
+Status renderFrames(const PlayerOptions& options, const OpenedScene& opened, const FrameFiles& files,
+                    std::span<const uint32_t> frames, Statistics& statistics, const SequenceParts& parts = {});

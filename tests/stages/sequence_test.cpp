@@ -1,10 +1,14 @@
-// Sequences of lumicut-play: the same bytes however a sequence is split or interrupted, and what is said of bad
-// requests.
+// Sequences of lumicut-play: the same bytes however a sequence is split or interrupted, and what is said of bad requests.
+#include "image/read_exr.h"
+#include "runtime/capture.h"
+#include "runtime/headless.h"
+#include "runtime/sequence.h"
 #include "tests/tools/run_program.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <numeric>
 #include <set>
 
 namespace
@@ -18,169 +22,232 @@ bool contains(const std::string& text, const std::string& part)
 class Sequence : public testing::Test
 {
 protected:
-    static void SetUpTestSuite()
+    void SetUp() override
     {
         ::setenv("XDG_CACHE_HOME", LUMICUT_TEST_CACHE, 1); // pipelines are built once for all tests
-        folder_ = new TemporaryFolder;
         ASSERT_EQ(runProgram(LUMICUT_SCENES, quoted("") + " cornell").exit_code, 0);
         const ProgramRun run = runProgram(LUMICUT_COMPILE, "-q " + quoted("cornell.glb"));
         ASSERT_EQ(run.exit_code, 0) << run.err;
-        std::ofstream(*folder_ / "path.json") << R"({"schema": "lumicut-path/1", "keys": [{"time": 0, "camera": 0},
+        std::ofstream(folder_ / "path.json") << R"({"schema": "lumicut-path/1", "keys": [{"time": 0, "camera": 0},
             {"time": 1, "position": [0.2, 1, 2.5], "forward": [-0.1, 0, -1]}]})";
     }
-    static void TearDownTestSuite() { delete folder_; }
 
-    static std::string quoted(const std::string& name) { return fmt::format("'{}'", (*folder_ / name).string()); }
-
-    /// A command that renders small frames into `folder`.
-    static std::string command(const std::string& folder, const std::string& arguments)
+    std::string quoted(const std::string& name) const { return fmt::format("'{}'", (folder_ / name).string()); }
+    std::set<std::string> files(const std::string& folder) const
     {
-        std::filesystem::create_directory(*folder_ / folder);
+        std::set<std::string> names;
+        for (const auto& entry : std::filesystem::directory_iterator(folder_ / folder))
+            names.insert(entry.path().filename().string());
+        return names;
+    }
+    std::string frame(const std::string& folder, const std::string& name) const
+    {
+        return fileBytes(folder_ / folder / name);
+    }
+    /// `folder` holds the frames of "whole", with equal bytes, and nothing else.
+    void expectWhole(const std::string& folder) const
+    {
+        EXPECT_EQ(files(folder), files("whole"));
+        for (const std::string& name : files("whole"))
+            EXPECT_EQ(frame(folder, name), frame("whole", name)) << folder << "/" << name;
+    }
+
+    TemporaryFolder folder_;
+};
+
+/// The player's parts in this process, so that pipelines are built once: a sequence of mode gi, which remembers.
+class RememberingSequence : public Sequence
+{
+protected:
+    void SetUp() override
+    {
+        Sequence::SetUp();
+        options_ = {.package = folder_ / "cornell.lumi",
+                    .headless = true,
+                    .width = 24,
+                    .height = 16,
+                    .path = folder_ / "path.json",
+                    .fps = 12,
+                    .preset = "preview",
+                    .assignments = {"photons.count=500", "samples.count=64"}};
+        auto opened = openScene(options_, {}, statistics_);
+        ASSERT_TRUE(opened) << opened.error().message;
+        opened_.emplace(std::move(*opened));
+    }
+
+    /// Frames first to last in short parts, so that there are several.
+    void render(const std::string& folder, uint32_t first, uint32_t last, int64_t warm_up = 2)
+    {
+        std::filesystem::create_directory(folder_ / folder);
+        const auto names = FrameFiles::parse(folder_ / folder / "f%02d.exr");
+        ASSERT_TRUE(names) << names.error().message;
+        std::vector<uint32_t> frames(last - first + 1);
+        std::iota(frames.begin(), frames.end(), first);
+        const Status status =
+            renderFrames(options_, *opened_, *names, frames, statistics_, {.frames = 4, .warm_up = warm_up});
+        EXPECT_TRUE(status) << status.error().message;
+    }
+
+    PlayerOptions options_;
+    Statistics statistics_;
+    std::optional<OpenedScene> opened_;
+};
+
+TEST_F(RememberingSequence, HasTheSameBytesInPieces)
+{
+    render("whole", 0, 11);
+    ASSERT_EQ(files("whole").size(), 12u);
+    EXPECT_NE(frame("whole", "f00.exr"), frame("whole", "f11.exr"));
+    for (const uint32_t first : {9u, 0u, 6u, 3u})
+        render("pieces", first, first + 2);
+    expectWhole("pieces");
+    render("cold", 4, 4, 0);
+    EXPECT_NE(frame("cold", "f04.exr"), frame("whole", "f04.exr")); // or there would be nothing to remember
+
+    // Frames of many samples are standing pictures, each by itself. (Frame 0 of seed 0 has seed 0.)
+    options_.sample_count = 2;
+    render("still", 0, 1);
+    render("second", 1, 1);
+    EXPECT_EQ(frame("still", "f01.exr"), frame("second", "f01.exr"));
+    std::optional<Renderer> renderer;
+    ASSERT_TRUE(makeRenderer(renderer, *opened_, Mode::kGi, options_.width, options_.height, opened_->settings));
+    Recorder rec(*opened_->device);
+    EXPECT_TRUE(renderSamples(rec, *renderer, *opened_, opened_->camera, 0, 2, statistics_));
+    ASSERT_TRUE(
+        capture(folder_ / "still/picture.exr", *renderer, *opened_->device, *opened_->scene, opened_->settings));
+    EXPECT_EQ(frame("still", "f00.exr"), frame("still", "picture.exr"));
+}
+
+/// Pixels of the back wall of the box, a white Lambertian 2.45 m before the camera: by their normals.
+void expectBackWall(std::span<const gpu::LayerSums> layers, uint32_t frame_count, uint32_t width, uint32_t height)
+{
+    const double half_height = 0.5 / 1.47, pixel = 2 * half_height / height; // at distance 1
+    size_t count = 0;
+    for (uint32_t i = 0; i < layers.size(); ++i)
+    {
+        const gpu::vec3 normal = 1 / float(frame_count) * layers[i].normal;
+        if (std::abs(normal.z - 1) > 1e-5)
+            continue;
+        ++count;
+        const double x = (i % width + 0.5 - width * 0.5) * pixel, y = (i / width + 0.5 - height * 0.5) * pixel;
+        // The sample lies anywhere in the pixel.
+        EXPECT_NEAR(layers[i].depth, 2.45 * std::sqrt(1 + x * x + y * y), 2.45 * pixel * std::sqrt(0.5)) << i;
+        EXPECT_NEAR(layers[i].albedo.x / float(frame_count), 0.73, 0.73 / 255) << i;
+    }
+    EXPECT_GT(count, layers.size() / 20);
+}
+
+TEST_F(RememberingSequence, LayersAddUpToThePicture)
+{
+    Settings settings = opened_->settings;
+    settings.antialias_frames = 0; // edges of the picture are smoothed, not those of its terms
+    std::optional<Renderer> renderer;
+    ASSERT_TRUE(makeRenderer(renderer, *opened_, Mode::kGi, options_.width, options_.height, settings, true));
+    Recorder rec(*opened_->device);
+    for (uint32_t frames = 1; frames <= 2; ++frames)
+    {
+        rec.begin(opened_->scene->descriptorSet());
+        renderer->record(rec, opened_->camera, settings, 7);
+        rec.submitAndWait();
+        ASSERT_EQ(renderer->sampleCount(), frames);
+        const std::vector<gpu::vec3> picture = renderer->picture(*opened_->device);
+        const std::vector<gpu::LayerSums> layers = renderer->layerSums(*opened_->device);
+        double direct = 0, indirect = 0;
+        for (size_t i = 0; i < picture.size(); ++i)
+        {
+            const gpu::LayerSums& l = layers[i];
+            const double sum = double(l.emission.x) + l.direct.x + l.caustics.x + l.indirect.x + l.glossy.x;
+            EXPECT_NEAR(sum / frames, picture[i].x, 1e-5 * picture[i].x + 1e-7) << i; // roundings of a dozen floats
+            direct += l.direct.x;
+            indirect += l.indirect.x;
+        }
+        EXPECT_GT(direct, 0);
+        EXPECT_GT(indirect, 0);
+        expectBackWall(layers, frames, options_.width, options_.height);
+    }
+    const std::vector<std::string> names(kLayerNames.begin(), kLayerNames.end());
+    ASSERT_TRUE(capture(folder_ / "layers.exr", *renderer, *opened_->device, *opened_->scene, settings, names));
+    const std::string bytes = fileBytes(folder_ / "layers.exr");
+    for (const char* channel :
+         {"R", "Z", "albedo.R", "caustics.G", "direct.B", "emission.R", "glossy.R", "indirect.R", "normal.X"})
+        EXPECT_TRUE(contains(bytes, std::string(1, '\0') + channel + std::string(1, '\0'))) << channel;
+    const auto read = readExr(folder_ / "layers.exr");
+    ASSERT_TRUE(read) << read.error().message;
+    EXPECT_EQ(read->rgb[0], renderer->picture(*opened_->device)[0].x);
+}
+
+/// The player as a program, in mode direct, which starts fast.
+class SequenceProgram : public Sequence
+{
+protected:
+    /// A command that renders small frames into `folder`; many shadow rays make them slow enough to be interrupted.
+    std::string command(const std::string& folder, const std::string& arguments) const
+    {
+        std::filesystem::create_directory(folder_ / folder);
         return fmt::format(
-            "--headless {} --path {} --output {} --size 24x16 --fps 12 --preset preview --set photons.count=500 "
-            "--set samples.count=64 {}",
+            "--headless {} --path {} --output {} --size 48x32 --fps 12 --mode direct --set direct_samples=64 {}",
             quoted("cornell.lumi"), quoted("path.json"), quoted(folder + "/f%03d.exr"), arguments);
     }
-    static ProgramRun play(const std::string& folder, const std::string& arguments)
+    ProgramRun play(const std::string& folder, const std::string& arguments) const
     {
         return runProgram(LUMICUT_PLAY, command(folder, arguments));
     }
-    static void expectPlayed(const std::string& folder, const std::string& arguments)
+    void expectPlayed(const std::string& folder, const std::string& arguments) const
     {
         const ProgramRun run = play(folder, arguments);
         EXPECT_EQ(run.exit_code, 0) << arguments << run.err;
         EXPECT_EQ(run.out, "");
     }
     /// Sends `signal` as soon as `frame` is there. @return the exit code
-    static int playUntil(const std::string& folder, const std::string& arguments, const std::string& frame,
-                         const char* signal)
+    int playUntil(const std::string& folder, const std::string& arguments, const std::string& frame,
+                  const char* signal) const
     {
-        const ProgramRun run = runProgram(
-            "/bin/sh", fmt::format("-c \"'{}' {} & while [ ! -e {} ]; do sleep 0.01; done; kill -{} \\$!; wait \\$!\"",
-                                   LUMICUT_PLAY, command(folder, arguments), quoted(folder + "/" + frame), signal));
-        return run.exit_code;
+        const std::string script = "-c \"'{}' {} & while [ ! -e {} ]; do sleep 0.01; done; kill -{} \\$!; wait \\$!\"";
+        return runProgram("/bin/sh", fmt::format(fmt::runtime(script), LUMICUT_PLAY, command(folder, arguments),
+                                                 quoted(folder + "/" + frame), signal))
+            .exit_code;
     }
-    static std::set<std::string> files(const std::string& folder)
-    {
-        std::set<std::string> names;
-        for (const auto& entry : std::filesystem::directory_iterator(*folder_ / folder))
-            names.insert(entry.path().filename().string());
-        return names;
-    }
-    static std::string frame(const std::string& folder, const std::string& name)
-    {
-        return fileBytes(*folder_ / (folder + "/" + name));
-    }
-
-    /// `folder` holds the frames of "whole", with equal bytes, and nothing else.
-    static void expectWhole(const std::string& folder)
-    {
-        EXPECT_EQ(files(folder), files("whole"));
-        for (const std::string& name : files("whole"))
-            EXPECT_EQ(frame(folder, name), frame("whole", name)) << folder << "/" << name;
-    }
-    static void expectSameInPieces();
-    static void expectSameAfterAKill();
-    static void expectSameAfterTermination();
-    static void expectWholeFramesAreLeftAlone();
-    static void expectNoDeviceIsNeeded();
-
-    static inline TemporaryFolder* folder_ = nullptr;
 };
 
-void Sequence::expectSameInPieces()
-{
-    for (const std::string piece : {"9-11", "0-2", "6-8", "3-5"})
-        expectPlayed("pieces", "--frames " + piece);
-    expectWhole("pieces");
-}
-
-void Sequence::expectSameAfterAKill()
-{
-    EXPECT_EQ(playUntil("killed", "--frames 0-11", "f004.exr", "KILL"), 128 + 9);
-    const std::set<std::string> left = files("killed");
-    EXPECT_LT(left.size(), 12u);
-    expectPlayed("killed", "--frames 0-11");
-    for (const std::string& name : left)
-        if (name.ends_with(".tmp")) // no program can remove it
-            std::filesystem::remove(*folder_ / "killed" / name);
-    expectWhole("killed");
-}
-
-void Sequence::expectSameAfterTermination()
-{
-    EXPECT_EQ(playUntil("ended", "--frames 0-11", "f002.exr", "TERM"), 128 + 15);
-    const std::set<std::string> left = files("ended");
-    EXPECT_LT(left.size(), 12u);
-    for (const std::string& name : left)
-        EXPECT_EQ(frame("ended", name), frame("whole", name)) << name;
-    expectPlayed("ended", "--frames 0-11");
-    expectWhole("ended");
-}
-
-void Sequence::expectWholeFramesAreLeftAlone()
-{
-    std::filesystem::copy(*folder_ / "whole", *folder_ / "resumed");
-    const auto write_time = [&](const char* name)
-    { return std::filesystem::last_write_time(*folder_ / "resumed" / name); };
-    std::filesystem::resize_file(*folder_ / "resumed/f005.exr", 300);
-    std::filesystem::remove(*folder_ / "resumed/f007.exr");
-    const ProgramRun list = play("resumed", "--frames 0-12 --list-missing");
-    EXPECT_EQ(list.exit_code, 0) << list.err;
-    EXPECT_EQ(list.out, "5\n7\n12\n");
-
-    const auto before = write_time("f004.exr");
-    expectPlayed("resumed", "--frames 0-11");
-    expectWhole("resumed");
-    EXPECT_EQ(write_time("f004.exr"), before);
-    expectPlayed("resumed", "--frames 4-4 --force");
-    expectWhole("resumed");
-    EXPECT_NE(write_time("f004.exr"), before);
-}
-
-void Sequence::expectNoDeviceIsNeeded()
-{
-    const ProgramRun run =
-        runProgram("/usr/bin/env", fmt::format("VK_ICD_FILENAMES=/none VK_DRIVER_FILES=/none '{}' {}", LUMICUT_PLAY,
-                                               command("whole", "--frames 0-11 --stats " + quoted("stats.json"))));
-    EXPECT_EQ(run.exit_code, 0) << run.err;
-    EXPECT_TRUE(contains(fileBytes(*folder_ / "stats.json"), "\"submissions\": 0")) << run.err;
-}
-
-TEST_F(Sequence, HasTheSameBytesHoweverItIsSplitOrInterrupted)
+TEST_F(SequenceProgram, GoesOnWhereItWasInterrupted)
 {
     expectPlayed("whole", "--frames 0-11");
     ASSERT_EQ(files("whole").size(), 12u);
-    EXPECT_NE(frame("whole", "f000.exr"), frame("whole", "f011.exr"));
-    expectSameInPieces();
-    expectSameAfterAKill();
-    expectSameAfterTermination();
-    expectWholeFramesAreLeftAlone();
-    expectNoDeviceIsNeeded();
-}
 
-TEST_F(Sequence, BlocksBeginAnew)
-{
-    expectPlayed("across", "--frames 31-33"); // blocks have 32 frames
-    expectPlayed("beyond", "--frames 32-33");
-    EXPECT_EQ(frame("across", "f032.exr"), frame("beyond", "f032.exr"));
-    EXPECT_EQ(frame("across", "f033.exr"), frame("beyond", "f033.exr"));
-}
+    EXPECT_EQ(playUntil("resumed", "--frames 0-11", "f001.exr", "TERM"), 128 + 15);
+    for (const std::string& name : files("resumed")) // and no temporary file
+        EXPECT_EQ(frame("resumed", name), frame("whole", name)) << name;
+    EXPECT_EQ(playUntil("resumed", "--frames 0-11", "f005.exr", "KILL"), 128 + 9);
+    for (const std::string& name : files("resumed"))
+        if (name.ends_with(".tmp")) // no program can remove it
+            std::filesystem::remove(folder_ / "resumed" / name);
+        else
+            EXPECT_EQ(frame("resumed", name), frame("whole", name)) << name;
+    EXPECT_LT(files("resumed").size(), 12u);
 
-TEST_F(Sequence, OfStandingFramesIsOneOfStillPictures)
-{
-    expectPlayed("still", "--frames 0-1 --spp 2");
-    expectPlayed("second", "--frames 1-1 --spp 2");
-    EXPECT_EQ(frame("still", "f001.exr"), frame("second", "f001.exr"));
+    const auto write_time = [&](const char* name)
+    { return std::filesystem::last_write_time(folder_ / "resumed" / name); };
+    std::filesystem::resize_file(folder_ / "resumed/f003.exr", 300);
+    const ProgramRun list = play("resumed", "--frames 2-5 --list-missing");
+    EXPECT_EQ(list.exit_code, 0) << list.err;
+    EXPECT_EQ(list.out, "3\n");
+    const auto before = write_time("f004.exr");
+    expectPlayed("resumed", "--frames 0-11");
+    expectWhole("resumed");
+    EXPECT_EQ(write_time("f004.exr"), before); // left alone
+    expectPlayed("resumed", "--frames 4-4 --force");
+    expectWhole("resumed");
+    EXPECT_NE(write_time("f004.exr"), before);
+
+    // What is there needs no device.
+    const std::string all = command("whole", "--frames 0-11 --stats " + quoted("stats.json"));
     const ProgramRun run = runProgram(
-        LUMICUT_PLAY, fmt::format("--headless {} --output {} --size 24x16 --preset preview --set photons.count=500 "
-                                  "--set samples.count=64 --spp 2",
-                                  quoted("cornell.lumi"), quoted("still/picture.exr")));
+        "/usr/bin/env", fmt::format("VK_ICD_FILENAMES=/none VK_DRIVER_FILES=/none '{}' {}", LUMICUT_PLAY, all));
     EXPECT_EQ(run.exit_code, 0) << run.err;
-    EXPECT_EQ(frame("still", "f000.exr"), frame("still", "picture.exr")); // frame 0 of seed 0 has seed 0
+    EXPECT_TRUE(contains(fileBytes(folder_ / "stats.json"), "\"submissions\": 0")) << run.err;
 }
 
-TEST_F(Sequence, BadRequestsAreRefusedInASentence)
+TEST_F(SequenceProgram, RefusesBadRequestsInASentence)
 {
     const auto refused = [&](const std::string& arguments, int code, const std::string& words)
     {
@@ -191,7 +258,7 @@ TEST_F(Sequence, BadRequestsAreRefusedInASentence)
         EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
         EXPECT_EQ(run.out, "");
     };
-    std::filesystem::create_directory(*folder_ / "refused");
+    std::filesystem::create_directory(folder_ / "refused");
     const std::string path = "--path " + quoted("path.json"), output = " --output " + quoted("refused/f%d.exr");
     const std::string sequence = "--headless " + path + output + " --size 24x16 ";
     refused(sequence + "--frames 5-3", 1, "comes before");
@@ -206,6 +273,9 @@ TEST_F(Sequence, BadRequestsAreRefusedInASentence)
     refused("--headless --fps 12", 1, "--fps is for sequences");
     refused("--headless --list-missing", 1, "--list-missing is for sequences");
     refused(sequence + "--frames 0-3 --fps 0", 1, "--fps");
+    refused(sequence + "--frames 0-3 --layers depht", 1, "--layers");
+    refused("--headless --layers depth --output " + quoted("refused/f.png"), 1, "FILE.exr");
+    refused("--headless --layers depth --mode reference --output " + quoted("refused/f.exr"), 1, "mode gi");
     for (const std::string name :
          {"f.exr", "f%s.exr", "f%5d.exr", "f%d%d.exr", "f%%d.exr", "f%.exr", "f%0d.exr", "%d/f.exr", "%d/f%d.exr"})
         refused("--headless --frames 0-3 " + path + " --output " + quoted("refused/" + name), 1, "%d or %0Nd");
@@ -213,10 +283,10 @@ TEST_F(Sequence, BadRequestsAreRefusedInASentence)
     refused("--headless --frames 0-3 " + path + " --output " + quoted("none/f%d.exr"), 2, "none");
     refused("--headless --frames 0-3" + output + " --path " + quoted("none.json"), 2, "none.json: error: ");
     refused("--headless --frames 0-3" + output + " --path " + quoted("cornell.lumi"), 3, "JSON");
-    std::ofstream(*folder_ / "empty.json") << R"({"schema": "lumicut-path/1", "keys": []})";
+    std::ofstream(folder_ / "empty.json") << R"({"schema": "lumicut-path/1", "keys": []})";
     refused("--headless --frames 0-3" + output + " --path " + quoted("empty.json"), 3, "(/keys)");
     EXPECT_EQ(files("refused"), std::set<std::string>());
-    std::ofstream(*folder_ / "refused/f2.exr") << "notes";
+    std::ofstream(folder_ / "refused/f2.exr") << "notes";
     refused(sequence + "--frames 0-3", 2, "f2.exr: error: is there already");
     refused(sequence + "--frames 0-3 --list-missing", 2, "--force");
     EXPECT_EQ(files("refused"), std::set<std::string>{"f2.exr"});
