@@ -18,7 +18,7 @@ constexpr uint32_t kRimProbes = 12;
 /// round more do. The mean of a first frame of a room on a plain of 10 km varied by 16 % after one, by 9 %
 /// after four and after eight (preset preview); with the default preset, and in Sponza, eight are noisier than four: a sharp
 /// distribution leaves few photons elsewhere.
-constexpr uint32_t kRehearsals = 4;
+constexpr uint32_t kWarmUpRounds = 4;
 
 constexpr float kGuideReach = 0.25f; // of the view distance: up to this far from their camera guided photons are reused
 
@@ -224,12 +224,12 @@ PhotonStage::Output GlobalIllumination::emitPhotons(const Context& c)
 
 /// Trains the guide before the first frame: splats the first hits of gathering rays, then traces photons and learns which of them
 /// arrive there.
-void GlobalIllumination::rehearse(const Context& c)
+void GlobalIllumination::warmUp(const Context& c)
 {
     guide_->reset(c.rec);
-    gather_.look(c.rec, c.rays, samples_.record(c.rec, c.rays, samplesInput(c)),
+    gather_.traceFirstHits(c.rec, c.rays, samples_.record(c.rec, c.rays, samplesInput(c)),
                  gatherInput(c), *guide_);
-    for (uint32_t round = 0; round < kRehearsals; ++round)
+    for (uint32_t round = 0; round < kWarmUpRounds; ++round)
     {
         PhotonStage::Input in = photonInput(c);
         in.seed = traceSeed(in.seed, round, gpu::kTermIndirect); // what is learned from the photons that are used is biased
@@ -267,7 +267,7 @@ PhotonTreeStage::Output GlobalIllumination::recordMap(const Context& c)
     {
         const auto scope = c.rec.scope("photons");
         if (guide_ && !guide_->hasLearned())
-            rehearse(c);
+            warmUp(c);
         return emitPhotons(c);
     }();
     legs_.record(c.rec, stored, c.seed);
@@ -372,7 +372,7 @@ void GlobalIllumination::recordGlossy(const Context& c, const CutStage::Output& 
                                 .first_sample = c.frame.accumulated,
                                 .specular_depth = c.plan.chain_depth,
                                 .seed = c.frame.camera.seed,
-                                .sure_reflectance = c.plan.sure_reflectance,
+                                .roulette_threshold = c.plan.roulette_threshold,
                                 .shared = c.plan.harmonics};
     const auto scope = c.rec.scope("glossy");
     if (in.shared)

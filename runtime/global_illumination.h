@@ -61,7 +61,7 @@ private:
     void recordDirect(const Context& c) const;
     PhotonStage::Input photonInput(const Context& c) const;
     PhotonStage::Output emitPhotons(const Context& c);
-    void rehearse(const Context& c);
+    void warmUp(const Context& c);
     bool isFar(const Context& c) const;
     PhotonTreeStage::Output recordMap(const Context& c);
     CutStage::Output recordCut(const Context& c, const PhotonTreeStage::Output& map);

@@ -6,16 +6,16 @@
 
 namespace
 {
-LightKind kindOf(const LightShare& light)
+LightKind kindOf(const LightProbability& light)
 {
-    return !light.isBeam() ? LightKind::kLamp : light.isPunctual() ? LightKind::kSun : LightKind::kSky;
+    return !light.isInfinite() ? LightKind::kLocal : light.isPunctual() ? LightKind::kDirectional : LightKind::kEnvironment;
 }
 } // namespace
 
-LightGroups groupLights(std::span<const LightShare> lights)
+LightGroups groupLights(std::span<const LightProbability> lights)
 {
     LightGroups result;
-    for (const LightKind kind : {LightKind::kSun, LightKind::kSky, LightKind::kLamp})
+    for (const LightKind kind : {LightKind::kDirectional, LightKind::kEnvironment, LightKind::kLocal})
     {
         std::vector<uint32_t> members;
         std::vector<double> weights;

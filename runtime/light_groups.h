@@ -7,9 +7,9 @@
 
 enum class LightKind
 {
-    kSun,  // directional
-    kSky,  // an environment: like a sun's, its power says nothing of how much of it is seen
-    kLamp,
+    kDirectional,
+    kEnvironment, // like a directional light, its power does not tell how much of it is visible
+    kLocal,
 };
 
 struct LightGroup
@@ -28,4 +28,4 @@ struct LightGroups
 };
 
 /// Within a group, lights are picked in proportion to their pmf. Lights of pmf 0 are in no group.
-LightGroups groupLights(std::span<const LightShare> lights);
+LightGroups groupLights(std::span<const LightProbability> lights);

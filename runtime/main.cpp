@@ -125,7 +125,7 @@ int main(int argc, char** argv)
 {
     CLI::App app{"Plays a .lumi package: a window with a fly camera, or pictures with --headless.", "lumicut-play"};
     app.set_version_flag("--version", "lumicut-play " LUMICUT_VERSION);
-    app.footer("Settings (--set name=value):\n" + describeKnobs() +
+    app.footer("Settings (--set name=value):\n" + describeSettings() +
                "Exit codes: 0 ok, 1 usage, 2 I/O, 3 invalid package, 4 no suitable device or out of memory, 5 unsupported;\n"
                "128 + N: signal N ended a sequence, whose frames so far are whole.");
     addDocumentation(app);

@@ -101,7 +101,7 @@ Result<std::unique_ptr<SceneGpu>> SceneGpu::create(const Device& device, const p
 {
     std::unique_ptr<SceneGpu> scene(new SceneGpu(device));
     for (const gpu::Light& light : package.lights())
-        scene->light_shares_.push_back({.kind = light.kind, .pmf = light.pmf});
+        scene->light_probabilities_.push_back({.kind = light.kind, .pmf = light.pmf});
     std::optional<Error> too_large;
     const auto fits = [&](const char* name, auto data, uint64_t limit)
     {

@@ -7,13 +7,13 @@
 #include <memory>
 #include <vector>
 
-struct LightShare // of the scene's power
+struct LightProbability // of the scene's power
 {
     uint32_t kind; // gpu::kLight*
     float pmf;
 
     /// Directional or environment: its power does not tell how much of it is visible. Otherwise it is a local light.
-    bool isBeam() const { return kind == gpu::kLightDirectional || kind == gpu::kLightEnvironment; }
+    bool isInfinite() const { return kind == gpu::kLightDirectional || kind == gpu::kLightEnvironment; }
     bool isPunctual() const { return kind < gpu::kLightTriangle; }
 };
 
@@ -47,7 +47,7 @@ public:
     /// Grows whenever a light or an emission is replaced: what was made under another version is out of date.
     uint64_t lightsVersion() const { return lights_version_; }
     /// By light index.
-    std::span<const LightShare> lightShares() const { return light_shares_; }
+    std::span<const LightProbability> lightProbabilities() const { return light_probabilities_; }
     /// Some light has an extent, so that a ray may find it: an emissive triangle or an environment.
     bool hasAreaLights() const { return hasFeature(gpu::kFeatureTriangleLights | gpu::kFeatureEnvironment); }
 
@@ -58,7 +58,7 @@ private:
 
     const Device& device_;
     gpu::SceneInfo info_{};
-    std::vector<LightShare> light_shares_;
+    std::vector<LightProbability> light_probabilities_;
     uint64_t lights_version_ = 0;
     uint32_t features_ = 0; // kFeature*
     std::array<Constant, 2> constants_{};

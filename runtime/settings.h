@@ -48,20 +48,20 @@ struct Settings
 /// Settings of a preset: preview (for CPUs and slow GPUs), default, high. @return kUsage listing the presets
 Result<Settings> presetSettings(std::string_view name);
 
-struct Knob
+struct Setting
 {
     std::string_view name;
     std::variant<uint32_t Settings::*, float Settings::*> member;
     double least, most;
     std::string_view unit; // "" for counts
     std::string_view help;
-    std::span<const Choice> choices = {}; // of least..most, where the knob is a choice
+    std::span<const Choice> choices = {}; // of least..most, where the setting is a choice
 };
 
-std::span<const Knob> knobs();
+std::span<const Setting> allSettings();
 
 /// The names of its choices with `separator` in between.
-std::string choiceNames(const Knob& knob, std::string_view separator);
+std::string choiceNames(const Setting& setting, std::string_view separator);
 
 /// A preset with assignments applied in order. @return kUsage naming the valid names or the range
 Result<Settings> makeSettings(std::string_view preset, std::span<const std::string> assignments);
@@ -69,5 +69,5 @@ Result<Settings> makeSettings(std::string_view preset, std::span<const std::stri
 /// Applies "name=value". @return kUsage naming the valid names or the range
 Status applySetting(Settings& settings, const std::string& assignment);
 
-/// "specular_depth = 8 (0..64): help", a line a knob, for --help.
-std::string describeKnobs();
+/// "specular_depth = 8 (0..64): help", a line a setting, for --help.
+std::string describeSettings();

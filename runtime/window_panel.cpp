@@ -39,44 +39,44 @@ std::optional<size_t> chooseCamera(std::span<const Camera> cameras)
 }
 
 /// @return whether it changed
-bool editKnob(const Knob& knob, uint32_t& value)
+bool editSetting(const Setting& setting, uint32_t& value)
 {
-    const std::string name(knob.name);
-    if (knob.choices.empty())
+    const std::string name(setting.name);
+    if (setting.choices.empty())
     {
-        const uint32_t least = uint32_t(knob.least), most = uint32_t(knob.most);
+        const uint32_t least = uint32_t(setting.least), most = uint32_t(setting.most);
         return ImGui::SliderScalar(name.c_str(), ImGuiDataType_U32, &value, &least, &most, nullptr,
                                    ImGuiSliderFlags_AlwaysClamp | (most > 100 ? ImGuiSliderFlags_Logarithmic : 0));
     }
-    const std::string items = choiceNames(knob, std::string_view("\0", 1)) + '\0'; // ImGui wants each name ended by a zero, and the list by one more
+    const std::string items = choiceNames(setting, std::string_view("\0", 1)) + '\0'; // ImGui wants each name ended by a zero, and the list by one more
     int index = int(value);
     const bool changed = ImGui::Combo(name.c_str(), &index, items.c_str());
     value = uint32_t(index);
     return changed;
 }
 
-bool editKnob(const Knob& knob, float& value)
+bool editSetting(const Setting& setting, float& value)
 {
-    const std::string name(knob.name), format = knob.unit.empty() ? "%.3g" : fmt::format("%.2f {}", knob.unit);
-    return ImGui::SliderFloat(name.c_str(), &value, float(knob.least), float(knob.most), format.c_str(), ImGuiSliderFlags_AlwaysClamp);
+    const std::string name(setting.name), format = setting.unit.empty() ? "%.3g" : fmt::format("%.2f {}", setting.unit);
+    return ImGui::SliderFloat(name.c_str(), &value, float(setting.least), float(setting.most), format.c_str(), ImGuiSliderFlags_AlwaysClamp);
 }
 
-/// Whether the knob decides only how the samples are shown.
-bool isDisplayKnob(const Knob& knob)
+/// Whether the setting decides only how the samples are shown.
+bool isDisplaySetting(const Setting& setting)
 {
-    return knob.member == decltype(knob.member)(&Settings::exposure) || knob.member == decltype(knob.member)(&Settings::tonemap);
+    return setting.member == decltype(setting.member)(&Settings::exposure) || setting.member == decltype(setting.member)(&Settings::tonemap);
 }
 
-bool editKnobs(Settings& settings)
+bool editSettings(Settings& settings)
 {
     bool restart = false;
     ImGui::PushItemWidth(ImGui::GetFontSize() * 10);
-    for (const Knob& knob : knobs())
+    for (const Setting& setting : allSettings())
     {
-        const bool changed = std::visit([&](auto member) { return editKnob(knob, settings.*member); }, knob.member);
-        restart |= changed && (!isDisplayKnob(knob) || settings.view != gpu::kViewNone); // views hold what is behind them
+        const bool changed = std::visit([&](auto member) { return editSetting(setting, settings.*member); }, setting.member);
+        restart |= changed && (!isDisplaySetting(setting) || settings.view != gpu::kViewNone); // views hold what is behind them
         if (ImGui::IsItemHovered())
-            ImGui::SetTooltip("%s", std::string(knob.help).c_str());
+            ImGui::SetTooltip("%s", std::string(setting.help).c_str());
     }
     ImGui::PopItemWidth();
     return restart;
@@ -94,7 +94,7 @@ PanelActions drawPanel(const PanelFacts& facts, Settings& settings, Mode& mode)
     showFacts(facts);
     ImGui::Separator();
     chooseMode(mode);
-    actions.restart = editKnobs(settings);
+    actions.restart = editSettings(settings);
     ImGui::Separator();
     actions.camera = chooseCamera(facts.cameras);
     ImGui::Separator();

@@ -9,7 +9,7 @@
 namespace
 {
 /// Russian-roulette thresholds of glossy rays: lower in a static view, where noise averages out.
-constexpr float kSureInMotion = 0.2f, kSureStanding = 0.05f;
+constexpr float kThresholdMoving = 0.2f, kThresholdStatic = 0.05f;
 
 /// A static view interpolates until every pixel could have had this many rays of its own (kLeastInterpolated frames at least),
 /// then gathers at pixels: the blur of the first frames fades, and their lack of noise hides the noise of the next ones.
@@ -63,6 +63,6 @@ FramePlan planFrame(const Settings& settings, const FrameTraits& traits, const F
     plan.denoise_passes = denoisePasses(settings, traits, frame);
     plan.remembers = settings.history_frames > 0 && goesOn(settings) && !frame.stands();
     plan.antialiases = settings.antialias_frames > 0 && goesOn(settings) && !frame.stands();
-    plan.sure_reflectance = frame.stands() ? kSureStanding : kSureInMotion;
+    plan.roulette_threshold = frame.stands() ? kThresholdStatic : kThresholdMoving;
     return plan;
 }

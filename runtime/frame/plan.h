@@ -29,7 +29,7 @@ struct FramePlan
     uint32_t denoise_passes; // of the filter over what is noisy; 0: none
     bool remembers;          // light is averaged with histories, and histories are updated
     bool antialiases;        // the picture is blended with the last one
-    float sure_reflectance;  // Russian-roulette threshold of glossy rays
+    float roulette_threshold;  // Russian-roulette threshold of glossy rays
 
     /// gpu::kLight* bits of the terms that the frame makes.
     uint32_t lightTerms() const

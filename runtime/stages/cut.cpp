@@ -1,12 +1,12 @@
 #include "runtime/stages/cut.h"
 
 CutStage::CutStage(const Device& device, const SceneGpu& scene, uint32_t max_photons)
-    : summarise_(device.kernel("cut/summarise", {climbConstant(device)})),
+    : reduce_upward_(device.kernel("cut/reduce_upward", {climbConstant(device)})),
       coarse_(device.kernel("cut/coarse", scene.constants(), {climbConstant(device)})),
       select_(device.kernel("cut/select")), refine_(device.kernel("cut/refine")),
       reorder_(device.kernel("cut/reorder")),
-      finest_(device.kernel("cut/finest")), probe_(device.kernel("cut/probe")),
-      cover_(device.kernel("cut/cover", scene.constants())), represent_(device.kernel("cut/represent", scene.constants())),
+      build_leaves_(device.kernel("cut/build_leaves")), probe_(device.kernel("cut/probe")),
+      estimate_coverage_(device.kernel("cut/estimate_coverage", scene.constants())), sample_direction_(device.kernel("cut/sample_direction", scene.constants())),
       compaction_(device, "cut.compaction", 2 * max_photons),
       tree_(device, "cut.tree", max_photons), sums_(device.array<gpu::PhotonSums>("cut.sums", max_photons)),
       arrivals_(device.array<uint32_t>("cut.arrivals", max_photons)),
@@ -43,7 +43,7 @@ CutStage::Output CutStage::record(Recorder& rec, const RayStage& rays, const Pho
                           .fewest = in.fewest,
                           .most_nodes = gpu::kCutProbeCapacity / std::max(in.probes + in.rim_probes, 1u)};
     rec.clear(arrivals_);
-    rec.runIndirect(summarise_, map.size, NoParams{},
+    rec.runIndirect(reduce_upward_, map.size, NoParams{},
                     {{"Size", map.size},
                      {"TreeNodes", tree_nodes},
                      {"Photons", map.photons},
@@ -81,7 +81,7 @@ CutStage::Output CutStage::record(Recorder& rec, const RayStage& rays, const Pho
     rays.close(rec, *work_size);
     rec.clear(members_);
     if (in.mode == CutMode::kLeaves)
-        rec.runIndirect(finest_, *work_size, params,
+        rec.runIndirect(build_leaves_, *work_size, params,
                         {{"Size", map.size},
                          {"TreeNodes", tree_nodes},
                          {"Photons", map.photons},
@@ -115,7 +115,7 @@ CutStage::Output CutStage::record(Recorder& rec, const RayStage& rays, const Pho
     }
     compaction_.record(rec, members_, ids_, size_, id_count_);
     const bool is_probed = in.probes > 0 && in.mode != CutMode::kNearest;
-    rec.runIndirect(represent_, size_, gpu::RepresentParams{.seed = in.seed, .is_probed = is_probed},
+    rec.runIndirect(sample_direction_, size_, gpu::SampleDirectionParams{.seed = in.seed, .is_probed = is_probed},
                     {{"CutSize", size_},
                      {"Ids", ids_},
                      {"Size", map.size},
@@ -149,6 +149,6 @@ void CutStage::recordProbes(Recorder& rec, const RayStage& rays, const Input& in
                      {"Queue", probes_.size},
                      {"Rays", probes_.rays}});
     rays.closest(rec, probes_, hits_, in.seed);
-    rec.runIndirect(cover_, size_, params,
+    rec.runIndirect(estimate_coverage_, size_, params,
                     {{"Size", size_}, {"Rays", probes_.rays}, {"Hits", hits_}, {"Nodes", nodes_}});
 }

@@ -47,8 +47,8 @@ public:
 private:
     void recordProbes(Recorder& rec, const RayStage& rays, const Input& in) const;
 
-    Kernel summarise_, coarse_, select_, refine_, reorder_, finest_, probe_,
-        cover_, represent_;
+    Kernel reduce_upward_, coarse_, select_, refine_, reorder_, build_leaves_, probe_,
+        estimate_coverage_, sample_direction_;
     Compaction compaction_;
     Tree tree_;
     Buffer sums_, arrivals_, id_count_, divided_, work_, next_work_, work_size_, next_work_size_,

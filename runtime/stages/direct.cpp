@@ -8,7 +8,7 @@ constexpr uint32_t kGroupSeed = 0x9e3779b9; // times the kind: groups are sample
 }
 
 DirectStage::DirectStage(const Device& device, const SceneGpu& scene, uint32_t max_pixels)
-    : lights_(groupLights(scene.lightShares())), sample_(device.kernel("direct/sample", scene.constants())),
+    : lights_(groupLights(scene.lightProbabilities())), sample_(device.kernel("direct/sample", scene.constants())),
       emitted_(device.kernel("direct/emitted", scene.constants())),
       emitter_queue_(device, "direct.emitter_queue", max_pixels),
       shadow_size_(device.array<gpu::QueueSize>("direct.shadow_size", 1)),
@@ -36,8 +36,8 @@ void DirectStage::recordSample(Recorder& rec, const RayStage& rays, const Input&
     {
         const bool last = &group == &lights_.groups.back();
         const uint32_t candidates = group.one_place ? 1 : in.candidate_count;
-        if (group.kind != LightKind::kSun)
-            (group.kind == LightKind::kSky ? emitted.sky_density : emitted.lamp_density) = 1 / group.share;
+        if (group.kind != LightKind::kDirectional)
+            (group.kind == LightKind::kEnvironment ? emitted.environment_density : emitted.local_density) = 1 / group.share;
         const gpu::DirectParams params{.point_count = in.point_count,
                                        .first_sample = in.first_sample,
                                        .seed = in.seed,
@@ -48,7 +48,7 @@ void DirectStage::recordSample(Recorder& rec, const RayStage& rays, const Input&
                                        .pick_count = group.pick_count,
                                        .share = group.share,
                                        .candidate_count = candidates,
-                                       .asks_emitters = last && has_area_lights_};
+                                       .traces_bsdf_samples = last && has_area_lights_};
         rays.reset(rec, shadow_size_);
         rec.run(sample_, in.point_count, params,
                 {{"Points", in.points},

@@ -4,8 +4,8 @@ GatherStage::GatherStage(const Device& device, const SceneGpu& scene, uint32_t m
                          uint32_t max_rays_per_sample)
     : max_samples_(max_samples), max_rays_(max_samples * max_rays_per_sample), has_specular_(scene.hasFeature(gpu::kFeatureSpecular)),
       generate_(device.kernel("gather/generate")),
-      generate_pixels_(device.kernel("gather/generate_pixels", scene.constants())), link_(device.kernel("gather/link", scene.constants())),
-      link_knn_(device.kernel("gather/link_knn", scene.constants())), sum_(device.kernel("gather/sum")),
+      generate_pixels_(device.kernel("gather/generate_pixels", scene.constants())), shade_(device.kernel("gather/shade", scene.constants())),
+      shade_knn_(device.kernel("gather/shade_knn", scene.constants())), sum_(device.kernel("gather/sum")),
       add_(device.kernel("gather/add")),
       project_(device.kernel("gather/project", scene.constants())),
       queue_(device, "gather.queue", max_samples * max_rays_per_sample),
@@ -20,7 +20,7 @@ GatherStage::GatherStage(const Device& device, const SceneGpu& scene, uint32_t m
 {
 }
 
-void GatherStage::look(Recorder& rec, const RayStage& rays, const SamplesStage::Output& samples,
+void GatherStage::traceFirstHits(Recorder& rec, const RayStage& rays, const SamplesStage::Output& samples,
                        const gpu::GatherParams& params, const LegsStage* legs, GuideStage* guide) const
 {
     rec.run(generate_, max_samples_ * gpu::kRaysGroupSize, params,
@@ -33,13 +33,13 @@ void GatherStage::look(Recorder& rec, const RayStage& rays, const SamplesStage::
              {"Directions", directions_}});
     rays.closest(rec, queue_, hits_, traceSeed(params.seed, 0, 0));
     if (guide)
-        guide->mark(rec, queue_, max_samples_ * params.ray_count, hits_);
+        guide->splat(rec, queue_, max_samples_ * params.ray_count, hits_);
 }
 
-void GatherStage::look(Recorder& rec, const RayStage& rays, const SamplesStage::Output& samples, const Input& in,
+void GatherStage::traceFirstHits(Recorder& rec, const RayStage& rays, const SamplesStage::Output& samples, const Input& in,
                        GuideStage& guide) const
 {
-    look(rec, rays, samples, gpu::GatherParams{.ray_count = in.ray_count, .seed = in.seed}, nullptr, &guide);
+    traceFirstHits(rec, rays, samples, gpu::GatherParams{.ray_count = in.ray_count, .seed = in.seed}, nullptr, &guide);
 }
 
 void GatherStage::record(Recorder& rec, const RayStage& rays, const SamplesStage::Output& samples,
@@ -47,7 +47,7 @@ void GatherStage::record(Recorder& rec, const RayStage& rays, const SamplesStage
                          GuideStage* guide) const
 {
     const gpu::GatherParams params = paramsOf(in);
-    look(rec, rays, samples, params, in.legs, guide);
+    traceFirstHits(rec, rays, samples, params, in.legs, guide);
     follow(rec, rays, map, cut, params);
     rec.run(sum_, max_samples_ * gpu::kRaysGroupSize, params,
             {{"Size", samples.size},
@@ -82,7 +82,7 @@ void GatherStage::recordPixels(Recorder& rec, const RayStage& rays, const Photon
                 {{"Points", pixels.points}, {"Rays", queue_.rays}, {"States", states_}});
         rays.closest(rec, queue_, hits_, params.seed);
         if (guide)
-            guide->mark(rec, queue_, max_rays_, hits_, first > 0);
+            guide->splat(rec, queue_, max_rays_, hits_, first > 0);
         follow(rec, rays, map, cut, params);
         rec.run(add_, here.point_count, here, {{"GatheredBlock", gathered_}, {"Radiance", pixels.radiance}});
     }
@@ -111,9 +111,9 @@ void GatherStage::follow(Recorder& rec, const RayStage& rays, const PhotonTreeSt
             rays.closest(rec, *queue, hits_, traceSeed(params.seed, 0, params.depth));
         rays.reset(rec, next->size);
         {
-            const auto scope = rec.scope("gather.link"); // the lookups: what the cut is there for
+            const auto scope = rec.scope("gather.shade"); // the lookups: what the cut is there for
             if (CutMode(params.mode) == CutMode::kKnn)
-                rec.runIndirect(link_knn_, queue->size, params,
+                rec.runIndirect(shade_knn_, queue->size, params,
                                 {{"Queue", queue->size},
                                  {"Rays", queue->rays},
                                  {"Hits", hits_},
@@ -125,7 +125,7 @@ void GatherStage::follow(Recorder& rec, const RayStage& rays, const PhotonTreeSt
                                  {"TreeNodes", map.tree.nodes()},
                                  {"Photons", map.photons}});
             else
-                rec.runIndirect(link_, queue->size, params,
+                rec.runIndirect(shade_, queue->size, params,
                                 {{"Queue", queue->size},
                                  {"Rays", queue->rays},
                                  {"Hits", hits_},

@@ -27,9 +27,9 @@ public:
         bool by_direction = false; // whether harmonics() is wanted; only in scenes with rough reflection
     };
     /// Traces the samples' rays to their first hits, and only splats these into `guide`.
-    void look(Recorder& rec, const RayStage& rays, const SamplesStage::Output& samples, const Input& in,
+    void traceFirstHits(Recorder& rec, const RayStage& rays, const SamplesStage::Output& samples, const Input& in,
               GuideStage& guide) const;
-    /// Sets irradiance and harmonic of samples.samples. @param guide if not null, the ends of
+    /// Sets irradiance and harmonic_mean_distance of samples.samples. @param guide if not null, the ends of
     /// rays are splatted into it
     void record(Recorder& rec, const RayStage& rays, const SamplesStage::Output& samples,
                 const PhotonTreeStage::Output& map, const CutStage::Output& cut, const Input& in,
@@ -55,7 +55,7 @@ public:
     const Buffer& harmonics() const { return harmonics_; } // gpu::SampleHarmonics[samples]
 
 private:
-    void look(Recorder& rec, const RayStage& rays, const SamplesStage::Output& samples, const gpu::GatherParams& params,
+    void traceFirstHits(Recorder& rec, const RayStage& rays, const SamplesStage::Output& samples, const gpu::GatherParams& params,
               const LegsStage* legs, GuideStage* guide) const;
 
     static constexpr uint32_t kMostPixelRays = 256, kMostPasses = 8;
@@ -67,7 +67,7 @@ private:
 
     uint32_t max_samples_, max_rays_;
     bool has_specular_;
-    Kernel generate_, generate_pixels_, link_, link_knn_, sum_, add_, project_;
+    Kernel generate_, generate_pixels_, shade_, shade_knn_, sum_, add_, project_;
     RayQueue queue_, next_queue_;
     Buffer hits_, states_, gathered_, directions_, no_legs_, harmonics_;
 };

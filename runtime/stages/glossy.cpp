@@ -4,7 +4,7 @@
 
 GlossyStage::GlossyStage(const Device& device, const SceneGpu& scene, uint32_t max_pixels)
     : generate_(device.kernel("glossy/generate", scene.constants())),
-      link_(device.kernel("glossy/link", scene.constants())),
+      shade_(device.kernel("glossy/shade", scene.constants())),
       harmonics_(device.kernel("glossy/harmonics", scene.constants())), queue_(device, "glossy.queue", max_pixels),
       next_queue_(device, "glossy.next_queue", max_pixels),
       hits_(device.texelArray<gpu::Hit>("glossy.hits", max_pixels)),
@@ -24,7 +24,7 @@ void GlossyStage::record(Recorder& rec, const RayStage& rays, const CutStage::Ou
                              .depth = 0,
                              .depth_limit = in.specular_depth,
                              .shared_ = in.shared,
-                             .sure_reflectance = in.sure_reflectance};
+                             .roulette_threshold = in.roulette_threshold};
     rays.reset(rec, queue_.size);
     rec.run(generate_, in.point_count, params,
             {{"Points", in.points},
@@ -39,7 +39,7 @@ void GlossyStage::record(Recorder& rec, const RayStage& rays, const CutStage::Ou
     {
         rays.closest(rec, *queue, hits_, traceSeed(in.seed, in.first_sample, ~params.depth));
         rays.reset(rec, next->size);
-        rec.runIndirect(link_, queue->size, params,
+        rec.runIndirect(shade_, queue->size, params,
                         {{"Queue", queue->size},
                          {"Rays", queue->rays},
                          {"Hits", hits_},

@@ -20,7 +20,7 @@ public:
         uint32_t first_sample;
         uint32_t specular_depth; // most delta events of a ray
         uint32_t seed;
-        float sure_reflectance; // Russian-roulette threshold: surfaces that reflect less trace a ray from some of their pixels
+        float roulette_threshold; // Russian-roulette threshold: surfaces that reflect less trace a ray from some of their pixels
         bool shared = false; // whether recordHarmonics() has computed a part of the light
     };
     void record(Recorder& rec, const RayStage& rays, const CutStage::Output& cut, const Input& in) const;
@@ -30,7 +30,7 @@ public:
     void recordHarmonics(Recorder& rec, const InterpolateStage::Sorted& samples, const Buffer& harmonics, const Input& in) const;
 
 private:
-    Kernel generate_, link_, harmonics_;
+    Kernel generate_, shade_, harmonics_;
     RayQueue queue_, next_queue_;
     Buffer hits_, states_, lobes_, shares_;
 };

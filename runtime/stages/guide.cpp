@@ -7,11 +7,11 @@ namespace
 {
 constexpr uint32_t kManyLights = 4; // from here on some of them may be hidden; a quad lamp is two triangles, hence two lights
 
-/// Scale of the fixed-point scores: as large as possible without overflow in a cell that all photons leave from.
-float scoreScale(uint32_t photon_count)
+/// Scale of the fixed-point estimates: as large as possible without overflow in a cell that all photons leave from.
+float estimateScale(uint32_t photon_count)
 {
     constexpr double kMostWeight = gpu::kGuideGroups / double(gpu::kGuideUnguided), kMostScale = 16;
-    const double most = double(photon_count) * gpu::kGuideMostWanted * kMostWeight;
+    const double most = double(photon_count) * gpu::kGuideMostImportance * kMostWeight;
     const double scale = std::min(kMostScale, 4294967295.0 / most);
     return float(scale >= 1 ? std::floor(scale) : scale);
 }
@@ -22,24 +22,24 @@ struct GuidedLights
     std::vector<float> other_lights; // cumulative fraction of power by light, without those that have a group of their own
 };
 
-GuidedLights groupsOf(std::span<const LightShare> lights)
+GuidedLights groupsOf(std::span<const LightProbability> lights)
 {
     GuidedLights result;
-    std::ranges::fill(result.groups.beam_lights, gpu::kNone);
+    std::ranges::fill(result.groups.infinite_lights, gpu::kNone);
     uint32_t beams = 0;
     double others = 0;
     for (uint32_t i = 0; i < lights.size(); ++i)
     {
-        if (lights[i].isBeam() && beams < gpu::kGuideBeams)
+        if (lights[i].isInfinite() && beams < gpu::kGuideInfiniteLights)
         {
-            result.groups.beam_lights[beams] = i;
+            result.groups.infinite_lights[beams] = i;
             result.groups.shares[beams++] = lights[i].pmf;
         }
         else
             others += lights[i].pmf;
         result.other_lights.push_back(float(others));
     }
-    result.groups.shares[gpu::kGuideBeams] = float(others);
+    result.groups.shares[gpu::kGuideInfiniteLights] = float(others);
     const auto groups = std::ranges::count_if(result.groups.shares, [](float share) { return share > 0; });
     for (uint32_t g = 0; g < gpu::kGuideGroups; ++g)
         result.groups.unlearned[g] = result.groups.shares[g] > 0 ? 1.0f / float(groups) : 0;
@@ -51,19 +51,19 @@ GuidedLights groupsOf(std::span<const LightShare> lights)
 
 bool GuideStage::helps(const SceneGpu& scene)
 {
-    const auto lights = scene.lightShares();
-    return lights.size() >= kManyLights || std::ranges::any_of(lights, &LightShare::isBeam);
+    const auto lights = scene.lightProbabilities();
+    return lights.size() >= kManyLights || std::ranges::any_of(lights, &LightProbability::isInfinite);
 }
 
 GuideStage::GuideStage(const Device& device, const SceneGpu& scene, uint32_t max_paths)
-    : emit_(device.kernel("guide/emit", scene.constants())), mark_(device.kernel("guide/mark", scene.constants())),
-      score_(device.kernel("guide/score", scene.constants())), learn_(device.kernel("guide/learn")),
+    : emit_(device.kernel("guide/emit", scene.constants())), splat_(device.kernel("guide/splat", scene.constants())),
+      estimate_(device.kernel("guide/estimate", scene.constants())), learn_(device.kernel("guide/learn")),
       distribution_(device.array<gpu::GuideDistribution>("guide.distribution", 1)),
       cells_(device.array<uint32_t>("guide.cells", max_paths)),
-      wanted_(device.array<uint32_t>("guide.wanted", gpu::kGuidePlaces)),
-      scores_(device.array<gpu::GuideScore>("guide.scores", gpu::kGuideTotal))
+      importance_(device.array<uint32_t>("guide.importance", gpu::kGuideBins)),
+      estimates_(device.array<gpu::GuideEstimate>("guide.estimates", gpu::kGuideTotal))
 {
-    const GuidedLights lights = groupsOf(scene.lightShares());
+    const GuidedLights lights = groupsOf(scene.lightProbabilities());
     groups_ = device.upload<gpu::GuideGroups>("guide.groups", std::span(&lights.groups, 1));
     other_lights_ = device.upload<float>("guide.other_lights", lights.other_lights);
 }
@@ -71,10 +71,10 @@ GuideStage::GuideStage(const Device& device, const SceneGpu& scene, uint32_t max
 void GuideStage::reset(Recorder& rec)
 {
     has_learned_ = false;
-    rec.clear(scores_);
-    rec.clear(wanted_);
+    rec.clear(estimates_);
+    rec.clear(importance_);
     rec.run(learn_, gpu::kGuideLearnSize, NoParams{},
-            {{"Groups", groups_}, {"Scores", scores_}, {"Distribution", distribution_}});
+            {{"Groups", groups_}, {"Estimates", estimates_}, {"Distribution", distribution_}});
 }
 
 void GuideStage::emit(Recorder& rec, const Buffer& starts, const gpu::EmitParams& params) const
@@ -87,19 +87,19 @@ void GuideStage::emit(Recorder& rec, const Buffer& starts, const gpu::EmitParams
              {"Cells", cells_}});
 }
 
-void GuideStage::mark(Recorder& rec, const RayQueue& queue, uint32_t max_rays, const Buffer& hits,
+void GuideStage::splat(Recorder& rec, const RayQueue& queue, uint32_t max_rays, const Buffer& hits,
                       bool more)
 {
     if (!more)
-        rec.clear(wanted_);
-    rec.run(mark_, max_rays / gpu::kGuideMarkStride, NoParams{},
-            {{"Queue", queue.size}, {"Rays", queue.rays}, {"Hits", hits}, {"Wanted", wanted_}});
+        rec.clear(importance_);
+    rec.run(splat_, max_rays / gpu::kGuideSplatStride, NoParams{},
+            {{"Queue", queue.size}, {"Rays", queue.rays}, {"Hits", hits}, {"Importance", importance_}});
 }
 
 void GuideStage::learn(Recorder& rec, const StoredPhotons& map)
 {
     has_learned_ = true;
-    rec.run(score_, map.path_count, gpu::ScoreParams{.scale = scoreScale(map.capacity)},
+    rec.run(estimate_, map.path_count, gpu::EstimateParams{.scale = estimateScale(map.capacity)},
             {{"Groups", groups_},
              {"Distribution", distribution_},
              {"Cells", cells_},
@@ -108,8 +108,8 @@ void GuideStage::learn(Recorder& rec, const StoredPhotons& map)
              {"Offsets", map.offsets},
              {"Counts", map.counts},
              {"Store", map.store},
-             {"Wanted", wanted_},
-             {"Scores", scores_}});
+             {"Importance", importance_},
+             {"Estimates", estimates_}});
     rec.run(learn_, gpu::kGuideLearnSize, NoParams{},
-            {{"Groups", groups_}, {"Scores", scores_}, {"Distribution", distribution_}});
+            {{"Groups", groups_}, {"Estimates", estimates_}, {"Distribution", distribution_}});
 }

@@ -21,7 +21,7 @@ public:
     // What was learned last, for tests and views.
     const Buffer& cells() const { return cells_; } // uint[path_count]: where each path left; kNone: it did not
     const Buffer& distribution() const { return distribution_; } // gpu::GuideDistribution
-    const Buffer& wanted() const { return wanted_; }             // uint[kGuidePlaces]: gathering rays that ended there
+    const Buffer& importance() const { return importance_; }             // uint[kGuideBins]: gathering rays that ended there
 
     /// `params.path_count` photons leave the lights by what was learned. @param starts gpu::PhotonStart[path_count]
     void emit(Recorder& rec, const Buffer& starts, const gpu::EmitParams& params) const;
@@ -29,12 +29,12 @@ public:
     /// Splats the ends of these rays into the importance map, which is cleared before.
     /// @param hits gpu::Hit[queue capacity]
     /// @param more whether the splats of the last call are kept
-    void mark(Recorder& rec, const RayQueue& queue, uint32_t max_rays, const Buffer& hits, bool more = false);
+    void splat(Recorder& rec, const RayQueue& queue, uint32_t max_rays, const Buffer& hits, bool more = false);
     /// Learns from the photons of the last emit().
     void learn(Recorder& rec, const StoredPhotons& map);
 
 private:
     bool has_learned_ = false;
-    Kernel emit_, mark_, score_, learn_;
-    Buffer groups_, other_lights_, distribution_, cells_, wanted_, scores_;
+    Kernel emit_, splat_, estimate_, learn_;
+    Buffer groups_, other_lights_, distribution_, cells_, importance_, estimates_;
 };

@@ -59,12 +59,12 @@ GPU_CONST uint kCutNormalBits = 12u;
 GPU_CONST uint kCutEyeSteps = 127u;
 GPU_CONST uint kCutIsClear = 0x80000000u; // all of the disc is on the surface and visible: a lookup needs no visibility ray
 
-struct RepresentParams
+struct SampleDirectionParams
 {
     uint seed;
     uint is_probed; // 1: discs are seen from somewhere; 0: all of them are
 };
-GPU_SIZE(RepresentParams, 8);
+GPU_SIZE(SampleDirectionParams, 8);
 
 struct ProbeParams
 {

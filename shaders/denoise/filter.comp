@@ -38,7 +38,7 @@ Guide loadGuide(uint pixel)
 }
 
 /// The same for both pixels. @param pixels between them
-float likeness(Guide a, Guide b, float a_lobe, float b_lobe, float pixels)
+float edgeStoppingWeight(Guide a, Guide b, float a_lobe, float b_lobe, float pixels)
 {
     float lobe = min(a_lobe, b_lobe), wider = (max(a_lobe, b_lobe) - lobe) / lobe;
     vec3 d = b.position - a.position, turn = b.normal - a.normal;
@@ -73,7 +73,7 @@ void main()
         float steps2 = dot(offset, offset), other_bright = brightness(other);
         if (other.lobe == 0.0 || isnan(other_bright) || isinf(other_bright))
             continue; // one bad sample must not spread
-        float weight = exp2(-0.5 * steps2) * likeness(guide, loadGuide(neighbour), center.lobe, other.lobe,
+        float weight = exp2(-0.5 * steps2) * edgeStoppingWeight(guide, loadGuide(neighbour), center.lobe, other.lobe,
                                                       float(params.step_) * sqrt(steps2));
         if (params.step_ > 1u || center.error >= 0.0)
             weight *= exp(-abs(other_bright - bright) /

@@ -27,15 +27,15 @@ struct DirectParams
     uint pick_count;
     float share;             // of the group, of all lights' pmf
     uint candidate_count;    // light samples of which one gets the shadow ray
-    uint asks_emitters;      // 1: this dispatch also sends the BSDF-sampled rays
+    uint traces_bsdf_samples;      // 1: this dispatch also sends the BSDF-sampled rays
 };
 GPU_SIZE(DirectParams, 44);
 
 struct EmittedParams
 {
     uint seed;
-    float sky_density; // of one candidate's direction, over the density of all lights together
-    float lamp_density;
+    float environment_density; // of one candidate's direction, over the density of all lights together
+    float local_density;
 };
 GPU_SIZE(EmittedParams, 12);
 

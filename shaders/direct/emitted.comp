@@ -25,7 +25,7 @@ vec3 emittedLight(Hit hit, vec3 direction, float pdf)
     if (hit.slot == kNone)
     {
         vec3 light = environmentRadiance(direction);
-        return light == vec3(0.0) ? light : light * misWeight(pdf, params.sky_density * environmentPdf(direction));
+        return light == vec3(0.0) ? light : light * misWeight(pdf, params.environment_density * environmentPdf(direction));
     }
     uint light = loadTriangle(loadBvhTriangle(hit.slot).triangle).light;
     if (light == kNone)
@@ -33,7 +33,7 @@ vec3 emittedLight(Hit hit, vec3 direction, float pdf)
     Surface s = surfaceAt(hit.slot, hit.barycentrics, direction);
     if (!emits(s))
         return vec3(0.0);
-    float light_pdf = params.lamp_density * trianglePdf(light, s.area, hit.t, abs(dot(s.geometric_normal, direction)));
+    float light_pdf = params.local_density * trianglePdf(light, s.area, hit.t, abs(dot(s.geometric_normal, direction)));
     return surfaceEmission(s.material, s.uv0, s.uv1, s.footprints) * misWeight(pdf, light_pdf);
 }
 

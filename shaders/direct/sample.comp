@@ -89,7 +89,7 @@ void main()
         shadow_rays[atomicAdd(shadow_queue.count, 1u)] =
             ShadowRay(shadowRay(s, chosen, path), carried * (sum / (luminance(carried) * float(params.candidate_count))));
 
-    if (params.asks_emitters == 0u)
+    if (params.traces_bsdf_samples == 0u)
         return;
     BsdfSample next = sampleBsdf(v.bsdf, v.wo, choice.x, u);
     vec3 wi = v.frame * next.wi;

@@ -33,5 +33,5 @@ void main()
     if (t != 0u || !exists)
         return;
     samples[sample_].irradiance = sums[0].rgb * (kPi / float(params.ray_count));
-    samples[sample_].harmonic = float(params.ray_count) / max(sums[0].w, 1e-6);
+    samples[sample_].harmonic_mean_distance = float(params.ray_count) / max(sums[0].w, 1e-6);
 }

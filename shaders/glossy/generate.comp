@@ -29,7 +29,7 @@ void main()
     if (!hasGlossyLobe(v.bsdf))
         return;
     vec3 reflected = specularReflectance(v.bsdf, v.wo.z);
-    float survival = clamp(missing * luminance(reflected * point.throughput) / params.sure_reflectance, 0.05, 1.0);
+    float survival = clamp(missing * luminance(reflected * point.throughput) / params.roulette_threshold, 0.05, 1.0);
     Sampler sampler_ = vertexSampler(path, point.depth + 1u, params.point_count, params.first_sample, params.seed);
     if (hasFeature(kFeatureDispersion))
         disperse(v, point.throughput, dispersionDraw(sampler_));

@@ -14,7 +14,7 @@ struct GlossyParams
     uint depth;        // delta events before this one
     uint depth_limit;
     uint shared_; // 1: Shares holds the fraction of the light that is there already
-    float sure_reflectance; // Russian-roulette threshold: from here on every pixel sends its ray
+    float roulette_threshold; // Russian-roulette threshold: from here on every pixel sends its ray
 };
 GPU_SIZE(GlossyParams, 32);
 

@@ -41,14 +41,14 @@ void main()
     nextPair(sampler_);
     vec2 u = nextPair(sampler_), v = nextPair(sampler_);
     uint cell = pickCell(pick), group = cell / kGuideCells, place = cell % kGuideCells;
-    bool beam = group < kGuideBeams;
+    bool beam = group < kGuideInfiniteLights;
     if (beam)
         u = (vec2(place % kGuideSide, place / kGuideSide) + u) / float(kGuideSide);
-    uint light = beam ? groups.beam_lights[group]
+    uint light = beam ? groups.infinite_lights[group]
                       : otherLight((float(place) + pick) / float(kGuideCells) * groups.shares[group]);
     Emission emission;
     if (beam)
-        emission = emitBeam(loadLight(light), u, v, sampler_);
+        emission = emitInfinite(loadLight(light), u, v, sampler_);
     else
         emission = emitFrom(loadLight(light), 0.0, false, 0u, u, v, sampler_);
     bool leaves = emission.power != vec3(0.0);

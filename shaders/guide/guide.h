@@ -11,14 +11,14 @@ GPU_NAMESPACE_BEGIN
 // power of a directional light does not tell how much of it is visible, and so are the cells of each.
 GPU_CONST uint kGuideSide = 32u;
 GPU_CONST uint kGuideCells = kGuideSide * kGuideSide; // of a group
-GPU_CONST uint kGuideBeams = 7u;                      // that have a group of their own at most
-GPU_CONST uint kGuideGroups = kGuideBeams + 1u;       // the last is that of the other lights
+GPU_CONST uint kGuideInfiniteLights = 7u;                      // that have a group of their own at most
+GPU_CONST uint kGuideGroups = kGuideInfiniteLights + 1u;       // the last is that of the other lights
 GPU_CONST uint kGuideTotal = kGuideGroups * kGuideCells;
 GPU_CONST uint kGuideVoxels = 64u;                    // each way, over the grid of lib/morton.glsl
 GPU_CONST uint kGuideSides = 6u;                      // of a voxel: the two sides of a thin wall differ in importance
-GPU_CONST uint kGuidePlaces = kGuideSides * kGuideVoxels * kGuideVoxels * kGuideVoxels;
-GPU_CONST uint kGuideMarkStride = 4u;                 // one of this many gathering rays is splatted
-GPU_CONST uint kGuideMostWanted = 1023u;              // largest importance of a place, rays
+GPU_CONST uint kGuideBins = kGuideSides * kGuideVoxels * kGuideVoxels * kGuideVoxels;
+GPU_CONST uint kGuideSplatStride = 4u;                 // one of this many gathering rays is splatted
+GPU_CONST uint kGuideMostImportance = 1023u;              // largest importance of a place, rays
 GPU_CONST uint kGuideGroupSize = 64u;
 GPU_CONST uint kGuideLearnSize = 256u;
 
@@ -27,18 +27,18 @@ GPU_CONST float kGuideMemory = 0.75f;  // weight of what was learned before, a f
 
 struct GuideGroups // which lights they are; fixed for a scene
 {
-    uint beam_lights[kGuideBeams]; // light index; kNone: no such group
+    uint infinite_lights[kGuideInfiniteLights]; // light index; kNone: no such group
     float shares[kGuideGroups];    // of all power
     float unlearned[kGuideGroups]; // probability that a photon leaves by the group where nothing was learned
 };
 GPU_SIZE(GuideGroups, 92);
 
-struct GuideScore
+struct GuideEstimate
 {
     uint now;     // importance at the places of this frame's photons, weighted by their power, fixed point
     float before; // fading sum over the frames
 };
-GPU_SIZE(GuideScore, 8);
+GPU_SIZE(GuideEstimate, 8);
 
 struct GuideDistribution // of emission, learned
 {
@@ -47,11 +47,11 @@ struct GuideDistribution // of emission, learned
 };
 GPU_SIZE(GuideDistribution, 32800);
 
-struct ScoreParams
+struct EstimateParams
 {
-    float scale; // of the fixed-point scores
+    float scale; // of the fixed-point estimates
 };
-GPU_SIZE(ScoreParams, 4);
+GPU_SIZE(EstimateParams, 4);
 
 GPU_NAMESPACE_END
 #endif

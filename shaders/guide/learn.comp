@@ -9,12 +9,12 @@
 layout(local_size_x = kGuideLearnSize) in;
 
 layout(set = 1, binding = 0, scalar) readonly buffer Groups { GuideGroups groups; };
-layout(set = 1, binding = 1, scalar) buffer Scores { GuideScore scores[]; };
+layout(set = 1, binding = 1, scalar) buffer Estimates { GuideEstimate estimates[]; };
 layout(set = 1, binding = 2, scalar) writeonly buffer Distribution { GuideDistribution distribution; };
 
 const uint kRun = kGuideTotal / kGuideLearnSize;    // cells
 const uint kGroupRuns = kGuideCells / kRun;
-shared float sums[kGuideLearnSize]; // of the runs' scores
+shared float sums[kGuideLearnSize]; // of the runs' estimates
 
 float sumOfRuns(uint first, uint end)
 {
@@ -30,9 +30,9 @@ void main()
     float own = 0.0;
     for (uint i = first; i < first + kRun; ++i)
     {
-        scores[i].before = kGuideMemory * scores[i].before + float(scores[i].now);
-        scores[i].now = 0u;
-        own += scores[i].before;
+        estimates[i].before = kGuideMemory * estimates[i].before + float(estimates[i].now);
+        estimates[i].now = 0u;
+        own += estimates[i].before;
     }
     sums[run] = own;
     barrier();
@@ -46,7 +46,7 @@ void main()
     float running = guided * sumOfRuns(group * kGroupRuns, run) + even * float((run % kGroupRuns) * kRun);
     for (uint i = first; i < first + kRun; ++i)
     {
-        running += guided * scores[i].before + even;
+        running += guided * estimates[i].before + even;
         bool last = (i + 1u) % kGuideCells == 0u;
         distribution.cells[i] = last || of_group == 0.0 ? 1.0 : running / of_group;
     }

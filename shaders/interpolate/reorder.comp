@@ -19,5 +19,5 @@ void main()
     if (i >= size.count)
         return;
     Sample s = samples[order[i]];
-    sorted[i] = SampleTexels(s.position, square(s.support), unpackNormal(s.normal), s.harmonic, s.irradiance, 1.0 / s.harmonic);
+    sorted[i] = SampleTexels(s.position, square(s.support), unpackNormal(s.normal), s.harmonic_mean_distance, s.irradiance, 1.0 / s.harmonic_mean_distance);
 }

@@ -10,7 +10,7 @@
 
 const uint kDensityBins = 32u;
 const uint kDensityRefinements = 3u; // histograms, each within one bin of the one before
-const uint kDensityThrong = 4096u; // photons visited, after which a full bin is not counted to its end
+const uint kDensityOvercrowded = 4096u; // photons visited, after which a full bin is not counted to its end
 
 /// Squared distance of a photon to x, longer off the surface than along it; kInfinity where it lights another surface.
 float photonDistance2(Photon photon, vec3 x, vec3 n)
@@ -36,11 +36,11 @@ float nearestRadius2(vec3 x, vec3 n, uint photon_count, uint wanted, float radiu
             bins[b] = 0u;
         float width = (high - low) / float(kDensityBins);
         uint open = kDensityBins, looked = 0u;
-        bool throng = false;
+        bool overcrowded = false;
         uint found = below;
         uint first, end;
         beginRanges(photon_count);
-        while (!throng && nextRange(x, low + float(open) * width, first, end))
+        while (!overcrowded && nextRange(x, low + float(open) * width, first, end))
         {
             for (uint i = first; i < end; ++i)
             {
@@ -55,7 +55,7 @@ float nearestRadius2(vec3 x, vec3 n, uint photon_count, uint wanted, float radiu
             while (found >= wanted && found - bins[open - 1u] >= wanted)
                 found -= bins[--open];
             looked += end - first;
-            throng = found >= wanted && looked > max(kDensityThrong, 4u * wanted);
+            overcrowded = found >= wanted && looked > max(kDensityOvercrowded, 4u * wanted);
         }
         if (found < wanted)
         {
@@ -66,9 +66,9 @@ float nearestRadius2(vec3 x, vec3 n, uint photon_count, uint wanted, float radiu
         }
         ++refinement;
         high = low + float(open) * width;
-        if (throng && open < 8u)
+        if (overcrowded && open < 8u)
             continue;
-        if (throng)
+        if (overcrowded)
             return high - width;
         if (found <= wanted + wanted / 16u)
             break;

@@ -62,7 +62,7 @@ float aimedDirectionPdf(vec3 origin, vec3 direction)
 }
 
 /// Density per square metre of origins across a parallel beam, aimed at targets picked uniformly.
-float aimedBeamPdf(vec3 origin, vec3 direction)
+float aimedOriginPdf(vec3 origin, vec3 direction)
 {
     float pdf = 0.0;
     for (uint i = 0u; i < scene.caustic_target_count; ++i)
@@ -78,7 +78,7 @@ vec3 sceneCenter() { return 0.5 * (scene.bounds_min + scene.bounds_max); }
 float sceneRadius() { return 0.5 * length(scene.bounds_max - scene.bounds_min) * 1.0001; }
 
 /// Where along a parallel beam a photon starts, in front of the whole scene, and the density of that per square metre.
-vec3 beamOrigin(vec3 direction, float aim, bool aimed, uint target, vec2 u, out float pdf)
+vec3 infiniteOrigin(vec3 direction, float aim, bool aimed, uint target, vec2 u, out float pdf)
 {
     vec3 center = aimed ? caustic_targets[target].center : sceneCenter();
     float radius = aimed ? caustic_targets[target].radius : sceneRadius();
@@ -90,7 +90,7 @@ vec3 beamOrigin(vec3 direction, float aim, bool aimed, uint target, vec2 u, out 
     bool inside = dot(off_center, off_center) <= square(sceneRadius());
     pdf = inside ? (1.0 - aim) / (kPi * square(sceneRadius())) : 0.0;
     if (aim > 0.0)
-        pdf += aim * aimedBeamPdf(origin, direction);
+        pdf += aim * aimedOriginPdf(origin, direction);
     return origin;
 }
 
@@ -171,7 +171,7 @@ Emission emitEnvironment(Light light, float aim, bool aimed, uint target, vec2 u
     if (from.pdf == 0.0)
         return kNoEmission;
     float pdf;
-    vec3 origin = beamOrigin(-from.wi, aim, aimed, target, u, pdf);
+    vec3 origin = infiniteOrigin(-from.wi, aim, aimed, target, u, pdf);
     return Emission(origin, -from.wi, from.weight / pdf);
 }
 
@@ -185,12 +185,12 @@ Emission emitFrom(Light light, float aim, bool aimed, uint target, vec2 u, vec2 
     if (light.kind != kLightDirectional)
         return emitPoint(light, aim, aimed, target, u);
     float pdf;
-    vec3 origin = beamOrigin(light.p1, aim, aimed, target, u, pdf);
+    vec3 origin = infiniteOrigin(light.p1, aim, aimed, target, u, pdf);
     return Emission(origin, light.p1, light.emission / (light.pmf * pdf));
 }
 
 /// The same of a sun or an environment, from focused origins. @param u place across the beam, @param v of the direction
-Emission emitBeam(Light light, vec2 u, vec2 v, inout Sampler s)
+Emission emitInfinite(Light light, vec2 u, vec2 v, inout Sampler s)
 {
     LightSample from = LightSample(-light.p1, kInfinity, vec3(0.0), light.emission / light.pmf, 1.0);
     if (hasFeature(kFeatureEnvironment) && light.kind == kLightEnvironment)

@@ -4,7 +4,7 @@
 #define LIB_GUIDE_GLSL
 #include "shaders/guide/guide.h"
 
-/// Fraction of the total power in a cell: the probability by which emitFrom() and emitBeam() count.
+/// Fraction of the total power in a cell: the probability by which emitFrom() and emitInfinite() count.
 float cellShare(uint cell) { return groups.shares[cell / kGuideCells] / float(kGuideCells); }
 
 /// Probability of a cell by what was learned.

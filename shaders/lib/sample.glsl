@@ -22,7 +22,7 @@ float sampleWeight(SampleTexels s, vec3 x, vec3 n)
 {
     vec3 d = x - s.position;
     float distance2 = dot(d, d);
-    if (distance2 >= s.support2 || dot(n, s.normal) <= 0.01 || dot(d, n + s.normal) < -0.01 * s.harmonic)
+    if (distance2 >= s.support2 || dot(n, s.normal) <= 0.01 || dot(d, n + s.normal) < -0.01 * s.harmonic_mean_distance)
         return 0.0;
     float rim = square(max(0.0, 1.0 - surfaceDistance2(d, s.normal) / s.support2));
     return rim * min(kLargestWeight, 1.0 / max(sqrt(distance2) * s.inverse_harmonic + normalVariation(n, s.normal), 1e-6));

@@ -7,7 +7,7 @@
 #include "shaders/lib/side.glsl"
 
 /// Index of the voxel's side that a point of a surface lies on.
-uint placeOf(vec3 position, vec3 normal)
+uint binOf(vec3 position, vec3 normal)
 {
     uvec3 v = uvec3(min(gridPlace(position) * float(kGuideVoxels), vec3(float(kGuideVoxels) - 1.0)));
     return ((v.z * kGuideVoxels + v.y) * kGuideVoxels + v.x) * kGuideSides + sideOf(normal);

@@ -53,7 +53,7 @@ struct Sample
     uint normal;
     vec3 irradiance; // W/m^2, indirect only
     float support;   // metres: influence radius
-    float harmonic;  // metres: harmonic mean distance of its rays' first hits
+    float harmonic_mean_distance;  // metres: harmonic mean distance of its rays' first hits
     uint pixel;
 };
 GPU_SIZE(Sample, 40);

@@ -171,11 +171,11 @@ void saveSettings(const fs::path& folder)
     for (const char* preset : {"preview", "default", "high"})
     {
         std::string text = preset;
-        for (const Knob& knob : knobs())
+        for (const Setting& setting : allSettings())
             text +=
-                fmt::format("\n{}={}\n{}={}", knob.name,
-                            knob.choices.empty() ? fmt::format("{}", knob.least) : knob.choices.front().name, knob.name,
-                            knob.choices.empty() ? fmt::format("{}", knob.most) : knob.choices.back().name);
+                fmt::format("\n{}={}\n{}={}", setting.name,
+                            setting.choices.empty() ? fmt::format("{}", setting.least) : setting.choices.front().name, setting.name,
+                            setting.choices.empty() ? fmt::format("{}", setting.most) : setting.choices.back().name);
         save(folder / preset, text.data(), text.size());
     }
     const std::string wrong = "default\nphotons.count=-1\nexposure=nan\nexposure=1e999\n=\nterm=\n";

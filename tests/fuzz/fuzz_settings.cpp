@@ -14,10 +14,10 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size)
     for (std::string line; std::getline(text, line);)
         assignments.push_back(line);
     if (const Result<Settings> settings = makeSettings(preset, assignments))
-        for (const Knob& knob : knobs())
+        for (const Setting& setting : allSettings())
         {
-            const float value = std::visit([&](auto member) { return float((*settings).*member); }, knob.member);
-            check(value >= float(knob.least) && value <= float(knob.most), "{} = {}", knob.name, value);
+            const float value = std::visit([&](auto member) { return float((*settings).*member); }, setting.member);
+            check(value >= float(setting.least) && value <= float(setting.most), "{} = {}", setting.name, value);
         }
     return 0;
 }

@@ -151,7 +151,7 @@ TEST_F(CutsAtAWall, LightNothingBehindIt)
                            .normal = packedNormal({0, -1, 0}),
                            .irradiance = {},
                            .support = 0.1f,
-                           .harmonic = 0,
+                           .harmonic_mean_distance = 0,
                            .pixel = 0});
     const uint32_t count = uint32_t(samples.size()), rays = 64;
     const Buffer size = sizeBuffer(count), on_gpu = upload("test.samples", samples), spheres;

@@ -286,7 +286,7 @@ TEST_F(Cuts, AreReadNearlyAsDensityIsEstimated)
                            .normal = packedNormal({0, 1, 0}),
                            .irradiance = {},
                            .support = 0.1f,
-                           .harmonic = 0,
+                           .harmonic_mean_distance = 0,
                            .pixel = 0});
     const uint32_t count = uint32_t(samples.size());
     constexpr uint32_t kRays = 64;

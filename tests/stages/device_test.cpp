@@ -133,22 +133,22 @@ void expectSettingRefused(const std::string& assignment, const std::vector<std::
     EXPECT_EQ(settings.direct_samples, Settings().direct_samples);
 }
 
-TEST(ApplySetting, ReachesEveryKnobFromItsLeastToItsMost)
+TEST(ApplySetting, ReachesEverySettingFromItsLeastToItsMost)
 {
-    for (const Knob& knob : knobs())
-        for (const double value : {knob.least, knob.most})
+    for (const Setting& setting : allSettings())
+        for (const double value : {setting.least, setting.most})
         {
             Settings settings;
-            const Status status = applySetting(settings, fmt::format("{}={}", knob.name, value));
-            if (!knob.choices.empty())
+            const Status status = applySetting(settings, fmt::format("{}={}", setting.name, value));
+            if (!setting.choices.empty())
             {
-                EXPECT_FALSE(status) << knob.name << " is chosen by name, not by number";
+                EXPECT_FALSE(status) << setting.name << " is chosen by name, not by number";
                 continue;
             }
             ASSERT_TRUE(status) << status.error().message;
             std::visit([&](auto member)
-                       { EXPECT_EQ(settings.*member, std::remove_reference_t<decltype(settings.*member)>(value)) << knob.name; },
-                       knob.member);
+                       { EXPECT_EQ(settings.*member, std::remove_reference_t<decltype(settings.*member)>(value)) << setting.name; },
+                       setting.member);
         }
     Settings settings;
     for (const auto& [name, value] : {std::pair("srgb", 0u), std::pair("aces", 1u), std::pair("agx", 2u)})
@@ -156,11 +156,11 @@ TEST(ApplySetting, ReachesEveryKnobFromItsLeastToItsMost)
         ASSERT_TRUE(applySetting(settings, fmt::format("tonemap={}", name)));
         EXPECT_EQ(settings.tonemap, value) << name;
     }
-    for (const Knob& knob : knobs())
-        for (const Choice& choice : knob.choices)
+    for (const Setting& setting : allSettings())
+        for (const Choice& choice : setting.choices)
         {
-            ASSERT_TRUE(applySetting(settings, fmt::format("{}={}", knob.name, choice.name)));
-            EXPECT_EQ(settings.*std::get<uint32_t Settings::*>(knob.member), choice.value) << knob.name << "=" << choice.name;
+            ASSERT_TRUE(applySetting(settings, fmt::format("{}={}", setting.name, choice.name)));
+            EXPECT_EQ(settings.*std::get<uint32_t Settings::*>(setting.member), choice.value) << setting.name << "=" << choice.name;
         }
     for (const auto& [name, value] : {std::pair("all", gpu::kTermAll), std::pair("emission", gpu::kTermEmission),
                                       std::pair("direct", gpu::kTermDirect), std::pair("caustics", gpu::kTermCaustics),
@@ -174,32 +174,32 @@ TEST(ApplySetting, ReachesEveryKnobFromItsLeastToItsMost)
 TEST(ApplySetting, ListsTheNamesWhereNoneMatches)
 {
     std::vector<std::string> names;
-    for (const Knob& knob : knobs())
-        names.emplace_back(knob.name);
+    for (const Setting& setting : allSettings())
+        names.emplace_back(setting.name);
     for (const std::string assignment : {"", "=", "nonsense=1", "exposure", "Exposure=1", " exposure=1", "=1"})
         expectSettingRefused(assignment, names);
 }
 
 TEST(ApplySetting, NamesTheRangeOfAValueOutsideIt)
 {
-    for (const Knob& knob : knobs())
+    for (const Setting& setting : allSettings())
     {
-        if (!knob.choices.empty())
+        if (!setting.choices.empty())
         {
-            expectSettingRefused(fmt::format("{}=nonsense", knob.name), {choiceNames(knob, ",")});
+            expectSettingRefused(fmt::format("{}=nonsense", setting.name), {choiceNames(setting, ",")});
             continue;
         }
-        const std::string range = fmt::format("{}..{}", knob.least, knob.most);
-        for (const double value : {knob.least - 1, knob.most + 1, 1e300})
-            expectSettingRefused(fmt::format("{}={}", knob.name, value), {std::string(knob.name), range});
+        const std::string range = fmt::format("{}..{}", setting.least, setting.most);
+        for (const double value : {setting.least - 1, setting.most + 1, 1e300})
+            expectSettingRefused(fmt::format("{}={}", setting.name, value), {std::string(setting.name), range});
         for (const std::string value : {"", "x", "1x", "nan", "inf", "1 ", "--1", "1,5"})
-            expectSettingRefused(fmt::format("{}={}", knob.name, value), {std::string(knob.name), range});
-        if (std::holds_alternative<uint32_t Settings::*>(knob.member))
-            expectSettingRefused(fmt::format("{}={}", knob.name, knob.least + 0.5), {"a whole number in " + range});
+            expectSettingRefused(fmt::format("{}={}", setting.name, value), {std::string(setting.name), range});
+        if (std::holds_alternative<uint32_t Settings::*>(setting.member))
+            expectSettingRefused(fmt::format("{}={}", setting.name, setting.least + 0.5), {"a whole number in " + range});
     }
 }
 
-TEST(ApplySetting, KeepsTheOtherKnobs)
+TEST(ApplySetting, KeepsTheOtherSettings)
 {
     Settings settings;
     ASSERT_TRUE(applySetting(settings, "exposure=-1.5"));

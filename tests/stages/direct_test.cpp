@@ -10,7 +10,7 @@ constexpr double kAlbedo = 0.5;
 
 TEST(LightGroups, PickEachLightByItsShareOfTheGroup)
 {
-    const std::vector<LightShare> lights{{gpu::kLightDirectional, 0.3f}, {gpu::kLightPoint, 0.125f},
+    const std::vector<LightProbability> lights{{gpu::kLightDirectional, 0.3f}, {gpu::kLightPoint, 0.125f},
                                          {gpu::kLightTriangle, 0.25f},   {gpu::kLightSpot, 0},
                                          {gpu::kLightPoint, 0.125f},     {gpu::kLightEnvironment, 0.2f}};
     const std::vector<double> shares{0.3, 0.2, 0.5}; // of directional, environment and local lights
@@ -20,11 +20,11 @@ TEST(LightGroups, PickEachLightByItsShareOfTheGroup)
     for (const LightGroup& group : result.groups)
     {
         EXPECT_NEAR(group.share, shares[size_t(group.kind)], 1e-6);
-        EXPECT_EQ(group.one_place, group.kind == LightKind::kSun);
+        EXPECT_EQ(group.one_place, group.kind == LightKind::kDirectional);
         for (uint32_t i = group.first_pick; i < group.first_pick + group.pick_count; ++i)
         {
             const gpu::LightPick& pick = result.picks[i];
-            EXPECT_EQ(lights[pick.light].isBeam(), group.kind != LightKind::kLamp);
+            EXPECT_EQ(lights[pick.light].isInfinite(), group.kind != LightKind::kLocal);
             drawn[pick.light] += double(group.share) * double(pick.threshold) / group.pick_count;
             drawn[pick.otherwise] += double(group.share) * (1 - double(pick.threshold)) / group.pick_count;
         }
@@ -35,7 +35,7 @@ TEST(LightGroups, PickEachLightByItsShareOfTheGroup)
 
 TEST(LightGroups, ALonePunctualLightHasOnePlace)
 {
-    const auto group = [](uint32_t kind) { return groupLights(std::vector<LightShare>{{kind, 1}}).groups.at(0); };
+    const auto group = [](uint32_t kind) { return groupLights(std::vector<LightProbability>{{kind, 1}}).groups.at(0); };
     EXPECT_TRUE(group(gpu::kLightPoint).one_place);
     EXPECT_TRUE(group(gpu::kLightDirectional).one_place);
     EXPECT_FALSE(group(gpu::kLightTriangle).one_place);

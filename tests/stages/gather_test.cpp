@@ -61,7 +61,7 @@ protected:
                 .normal = packedNormal(normal),
                 .irradiance = {-1, -1, -1},
                 .support = 0.1f,
-                .harmonic = -1,
+                .harmonic_mean_distance = -1,
                 .pixel = 0};
     }
 
@@ -341,9 +341,9 @@ TEST_F(Gather, FindsTheHarmonicMeanDistance)
                 }
             const double mean = sum / (kSteps * kSteps),
                          deviation = std::sqrt((squares / (kSteps * kSteps) - mean * mean) / kRays);
-            EXPECT_TRUE(std::isfinite(sample.harmonic));
-            EXPECT_LE(std::abs(1 / sample.harmonic - mean), 4 * deviation) << closed;
-            difference += 1 / sample.harmonic - mean;
+            EXPECT_TRUE(std::isfinite(sample.harmonic_mean_distance));
+            EXPECT_LE(std::abs(1 / sample.harmonic_mean_distance - mean), 4 * deviation) << closed;
+            difference += 1 / sample.harmonic_mean_distance - mean;
             variance += deviation * deviation;
         }
         fmt::print("  {}: mean difference {:+.5f} 1/m, standard deviation of independent rays {:.5f} 1/m\n",
@@ -448,8 +448,8 @@ TEST_F(Gather, IsTheSameForTheSameSeed)
     for (size_t i = 0; i < samples.size(); ++i)
     {
         EXPECT_EQ(one[i].irradiance.x, again[i].irradiance.x);
-        EXPECT_EQ(one[i].harmonic, again[i].harmonic);
-        equal += one[i].harmonic == other[i].harmonic;
+        EXPECT_EQ(one[i].harmonic_mean_distance, again[i].harmonic_mean_distance);
+        equal += one[i].harmonic_mean_distance == other[i].harmonic_mean_distance;
     }
     EXPECT_LT(equal, samples.size() / 2);
 }

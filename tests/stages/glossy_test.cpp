@@ -127,7 +127,7 @@ protected:
                                    .normal = packedNormal(n),
                                    .irradiance = {},
                                    .support = 1,
-                                   .harmonic = 1,
+                                   .harmonic_mean_distance = 1,
                                    .pixel = 0});
         return samples;
     }
@@ -245,7 +245,7 @@ protected:
                                                                      .normal = packedNormal({0, 1, 0}),
                                                                      .irradiance = irradiance,
                                                                      .support = 1,
-                                                                     .harmonic = 1,
+                                                                     .harmonic_mean_distance = 1,
                                                                      .pixel = 0}}),
                      spheres = upload<gpu::vec4>("test.spheres", {{kPoint.x, kPoint.y, kPoint.z, 1}}),
                      harmonics = device().uploadTexels<gpu::SampleHarmonics>("test.harmonics", std::vector{light});

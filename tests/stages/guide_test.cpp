@@ -62,7 +62,7 @@ protected:
                [&](Recorder& rec)
                {
                    rays_->closest(rec, queue, hits, 1);
-                   guide_->mark(rec, queue, uint32_t(rays.size()), hits);
+                   guide_->splat(rec, queue, uint32_t(rays.size()), hits);
                });
     }
 
@@ -168,12 +168,12 @@ TEST_F(Guides, AreNoHelpWithOneLamp)
     EXPECT_FALSE(GuideStage::helps(*load(builder.compile())));
 }
 
-/// mark, score and learn against sums over the photons, by cell.
+/// splat, estimate and learn against sums over the photons, by cell.
 TEST_F(Guides, LearnHowMuchIsWantedOfEachCellsPhotons)
 {
     look();
     const std::vector<double> start = probabilities();
-    const auto wanted = contents<uint32_t>(guide_->wanted(), gpu::kGuidePlaces);
+    const auto importance = contents<uint32_t>(guide_->importance(), gpu::kGuideBins);
     const PhotonStage::Output out = trace(0);
     const auto photons = contents<gpu::Photon>(out.photons, out.capacity);
     const auto slots = contents<uint32_t>(out.slots, countOf(out.size));
@@ -194,7 +194,7 @@ TEST_F(Guides, LearnHowMuchIsWantedOfEachCellsPhotons)
     for (uint32_t path = 0; path < kPaths; ++path)
         for (uint32_t n = 0; n < counts[path]; ++n)
         {
-            const double rays = std::min(wanted[place(photons[slots[offsets[path] + n]])], gpu::kGuideMostWanted);
+            const double rays = std::min(importance[place(photons[slots[offsets[path] + n]])], gpu::kGuideMostImportance);
             scores[cells[path]] += rays, total += rays; // nothing was guided yet: all weigh 1
             useful += rays > 0;
         }

@@ -164,7 +164,7 @@ TEST_F(Reuse, PlacementSeedKeepsSamplesWhereTheyAreUnderOtherSeeds)
     {
         relit += free[i].irradiance.x != kept[i].irradiance.x;
         for (gpu::Sample* sample : {&free[i], &kept[i]}) // what is gathered
-            sample->irradiance = {}, sample->harmonic = 0;
+            sample->irradiance = {}, sample->harmonic_mean_distance = 0;
     }
     EXPECT_TRUE(equalBits(free, kept));
     EXPECT_GT(relit, free.size() / 2);

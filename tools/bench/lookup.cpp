@@ -27,11 +27,11 @@ struct ModeResult
     std::vector<gpu::Sample> samples; // of the last frame: where they are
     std::vector<double> irradiance;   // of each: sum of the channels, mean over the frames
     double nodes = 0;                 // of the cut, mean over the frames
-    double link_ms = 0, gather_ms = 0, cut_ms = 0;
+    double lookup_ms = 0, gather_ms = 0, cut_ms = 0;
     uint64_t rays = 0; // lookups of a frame; misses among them
     Difference from_knn, from_truth;
 
-    double nanoseconds() const { return link_ms * 1e6 / double(rays); }
+    double nanoseconds() const { return lookup_ms * 1e6 / double(rays); }
 };
 
 struct Truth
@@ -86,7 +86,7 @@ Result<ModeResult> measure(const OpenedPackage& opened, const LookupBenchOptions
         if (mode != CutMode::kKnn)
             result.nodes += double(renderer.cutNodeCount(*opened.device)) / options.repeats;
     }
-    result.link_ms = stages.median("gather.link");
+    result.lookup_ms = stages.median("gather.shade");
     result.gather_ms = stages.median("gather");
     result.cut_ms = stages.median("cut");
     RayTally tally(*opened.device);

@@ -29,5 +29,5 @@ Incident lightAt(vec3 x, vec3 n, uint random)
         return nearestCutLight(x, n, kInfinity);
     return cutLight(x, n, random);
 }
-#include "shaders/lib/gather_link.glsl"
-#include "shaders/gather/link_body.glsl"
+#include "shaders/lib/gather_vertex.glsl"
+#include "shaders/gather/shade_body.glsl"

@@ -27,7 +27,7 @@ vec3 reflectedLight(PathVertex v, Incident light)
     return f.diffuse * light.irradiance + f.specular * kept * light.in_its_color;
 }
 
-struct Link
+struct GatherVertex
 {
     vec3 radiance; // of the finished path; 0 while it continues
     bool goes_on;
@@ -37,23 +37,23 @@ struct Link
 /// @param state of the path; updated where it goes on
 /// @param count_emitters whether emitters and sky met through mirrors or glass count. From a glossy lobe they do; from the
 /// diffuse one they are caustics. Met directly they are direct light: they never count.
-Link followLink(Ray ray, Hit hit, inout GatherState state, Sampler sampler_, bool count_emitters)
+GatherVertex shadeGatherVertex(Ray ray, Hit hit, inout GatherState state, Sampler sampler_, bool count_emitters)
 {
-    Link link = Link(vec3(0.0), false, ray);
+    GatherVertex vertex = GatherVertex(vec3(0.0), false, ray);
     bool counts = count_emitters && state.specular > 0u;
     if (hit.slot == kNone)
     {
         if (counts)
-            link.radiance = state.throughput * environmentRadiance(ray.direction);
-        return link;
+            vertex.radiance = state.throughput * environmentRadiance(ray.direction);
+        return vertex;
     }
     PathVertex v = vertexAt(ray, hit);
     Surface s = v.surface;
     if (isUnlit(v))
-        return link;
+        return vertex;
     state.throughput *= transmittanceTo(v, state.medium, hit.t);
     if (counts && emits(s))
-        link.radiance = state.throughput * v.material.emission;
+        vertex.radiance = state.throughput * v.material.emission;
     uvec2 bits = nextBits(sampler_);
     float choice = toUnitFloat(bits.x);
     disperse(v, state.throughput, toUnitFloat(hash(bits.y, 1u)));
@@ -65,19 +65,19 @@ Link followLink(Ray ray, Hit hit, inout GatherState state, Sampler sampler_, boo
         vec3 reflected = reflectedLight(v, lightAt(s.position, s.geometric_normal, bits.y));
         if (isTranslucent(b))
             reflected += diffuseTransmittance(b, v.wo.z) * kInvPi * lightAt(s.position, -s.geometric_normal, bits.y).irradiance;
-        link.radiance += state.throughput * reflected / (hasDeltaLobe(b) ? scattered : 1.0);
-        return link;
+        vertex.radiance += state.throughput * reflected / (hasDeltaLobe(b) ? scattered : 1.0);
+        return vertex;
     }
     BsdfSample next = sampleBsdf(b, v.wo, choice, vec2(0.5));
     vec3 wi = v.frame * next.wi;
     if (next.weight == vec3(0.0) || !sidesAgree(s, wi, next.wi.z))
-        return link;
+        return vertex;
     state.medium = mediumAfter(v, next, state.medium);
     state.throughput *= next.weight;
     state.specular += uint(!next.passed);
-    link.goes_on = true;
-    link.next = leavingRay(s, wi, kInfinity, ray.path);
-    return link;
+    vertex.goes_on = true;
+    vertex.next = leavingRay(s, wi, kInfinity, ray.path);
+    return vertex;
 }
 
 #endif

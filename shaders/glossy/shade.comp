@@ -24,7 +24,7 @@ layout(set = 1, binding = 10, scalar) readonly buffer Directions { uint directio
 #include "shaders/lib/cut_light.glsl"
 
 Incident lightAt(vec3 x, vec3 n, uint random) { return cutLight(x, n, random); }
-#include "shaders/lib/gather_link.glsl"
+#include "shaders/lib/gather_vertex.glsl"
 
 void main()
 {
@@ -35,11 +35,11 @@ void main()
     Hit hit = loadHit(i);
     GatherState state = states[ray.path];
     Sampler sampler_ = Sampler(hash(params.seed, ray.path), params.first_sample, params.depth);
-    Link link = followLink(ray, hit, state, sampler_, true);
-    if (link.radiance != vec3(0.0))
-        radiance[ray.path] += link.radiance;
-    if (!link.goes_on || params.depth >= params.depth_limit)
+    GatherVertex vertex = shadeGatherVertex(ray, hit, state, sampler_, true);
+    if (vertex.radiance != vec3(0.0))
+        radiance[ray.path] += vertex.radiance;
+    if (!vertex.goes_on || params.depth >= params.depth_limit)
         return;
     states[ray.path] = state;
-    next_rays[atomicAdd(next_queue.count, 1u)] = link.next;
+    next_rays[atomicAdd(next_queue.count, 1u)] = vertex.next;
 }

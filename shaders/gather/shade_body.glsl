@@ -1,4 +1,4 @@
-// The body of gather/link.comp and gather/link_knn.comp, which differ in how they read the light where a ray ends.
+// The body of gather/shade.comp and gather/shade_knn.comp, which differ in how they read the light where a ray ends.
 void main()
 {
     uint i = gl_GlobalInvocationID.x;
@@ -12,14 +12,14 @@ void main()
     float weight = state.throughput.x;
     uint sample_ = ray.path / params.ray_count;
     Sampler sampler_ = Sampler(hash(params.seed, sample_), ray.path - sample_ * params.ray_count, 1u + params.depth);
-    Link link = followLink(ray, hit, state, sampler_, false);
-    bool goes_on = link.goes_on && params.depth < params.depth_limit;
+    GatherVertex vertex = shadeGatherVertex(ray, hit, state, sampler_, false);
+    bool goes_on = vertex.goes_on && params.depth < params.depth_limit;
     if (params.depth == 0u)
-        gathered[ray.path] = Gathered(link.radiance, hit.slot == kNone ? 0.0 : weight / max(hit.t, 1e-6));
+        gathered[ray.path] = Gathered(vertex.radiance, hit.slot == kNone ? 0.0 : weight / max(hit.t, 1e-6));
     else
-        gathered[ray.path].radiance += link.radiance;
+        gathered[ray.path].radiance += vertex.radiance;
     if (!goes_on)
         return;
     states[ray.path] = state;
-    next_rays[atomicAdd(next_queue.count, 1u)] = link.next;
+    next_rays[atomicAdd(next_queue.count, 1u)] = vertex.next;
 }

@@ -12,7 +12,7 @@
 // it: such a node is centred on the chosen photon. One thread per node.
 
 layout(local_size_x = kCutGroupSize) in;
-layout(push_constant, scalar) uniform Params { RepresentParams params; };
+layout(push_constant, scalar) uniform Params { SampleDirectionParams params; };
 
 layout(set = 1, binding = 0, scalar) readonly buffer CutSize { QueueSize cut_size; };
 layout(set = 1, binding = 1, scalar) readonly buffer Ids { uint ids[]; };

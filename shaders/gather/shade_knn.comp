@@ -28,5 +28,5 @@ Incident lightAt(vec3 x, vec3 n, uint random)
     float radius2 = square(params.radius * viewDistance(x));
     return densityLight(x, n, size.count, params.photon_count, radius2, radius2 / 256.0, random);
 }
-#include "shaders/lib/gather_link.glsl"
-#include "shaders/gather/link_body.glsl"
+#include "shaders/lib/gather_vertex.glsl"
+#include "shaders/gather/shade_body.glsl"
