@@ -107,7 +107,8 @@ struct Ends6
         return best;
     }
     explicit Ends6(const Line<N>& wanted)
-        : first(quantize(wanted.first, Halfway::kUp, line.first)), second(quantize(wanted.second, Halfway::kDown, line.second))
+        : first(quantize(wanted.first, Halfway::kUp, line.first)),
+          second(quantize(wanted.second, Halfway::kDown, line.second))
     {
     }
 };

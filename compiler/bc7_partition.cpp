@@ -25,7 +25,10 @@ const std::array<std::array<Four, 16>, 16>& membership()
     return table;
 }
 
-Four broadcast(float x) { return Four{x, x, x, x}; }
+Four broadcast(float x)
+{
+    return Four{x, x, x, x};
+}
 
 /// The variance of a subset across its principal axis: the trace of its covariance less the largest eigenvalue, by two steps
 /// of power iteration and a Rayleigh quotient.

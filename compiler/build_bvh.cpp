@@ -119,8 +119,7 @@ void fillPrimitives(const Source& source, RTCBuildPrimitive* primitives)
                     for (size_t i = batch * kBatch; i < std::min(count, (batch + 1) * kBatch); ++i)
                     {
                         const Box b = source.box(uint32_t(i));
-                        primitives[i] = {b.low.x,  b.low.y,  b.low.z,  0,
-                                         b.high.x, b.high.y, b.high.z, uint32_t(i)};
+                        primitives[i] = {b.low.x, b.low.y, b.low.z, 0, b.high.x, b.high.y, b.high.z, uint32_t(i)};
                     }
                 });
 }

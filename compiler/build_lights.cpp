@@ -1,13 +1,13 @@
 #include "compiler/build_lights.h"
 
-#include "format/alias_table.h"
 #include "compiler/caustic_targets.h"
 #include "compiler/emission_average.h"
 #include "compiler/environment.h"
 #include "compiler/vector_math.h"
+#include "format/alias_table.h"
 
-#include <numbers>
 #include <algorithm>
+#include <numbers>
 #include <numeric>
 
 namespace
@@ -143,7 +143,10 @@ double totalPower(const std::vector<Candidate>& candidates)
     return std::accumulate(candidates.begin(), candidates.end(), 0.0,
                            [](double sum, const Candidate& c) { return sum + c.power; });
 }
-bool isBeam(const Candidate& c) { return c.light.kind == gpu::kLightDirectional || c.light.kind == gpu::kLightEnvironment; }
+bool isBeam(const Candidate& c)
+{
+    return c.light.kind == gpu::kLightDirectional || c.light.kind == gpu::kLightEnvironment;
+}
 
 /// The weight by which each light is picked: its power, except that directional and environment lights beside local ones get
 /// at most half of all samples. Their power is what falls on a disc as wide as the scene: indoors nearly all of that hits the

@@ -4,10 +4,10 @@
 
 struct LightTables
 {
-    std::vector<gpu::Light> lights;          // punctual, then emissive triangles, then the environment
-    std::vector<gpu::AliasEntry> aliases;    // [lights.size()]
+    std::vector<gpu::Light> lights;       // punctual, then emissive triangles, then the environment
+    std::vector<gpu::AliasEntry> aliases; // [lights.size()]
     std::vector<gpu::CausticTarget> caustic_targets;
-    std::vector<float> powers;               // [lights.size()] W, luminance
+    std::vector<float> powers; // [lights.size()] W, luminance
     uint32_t emissive_triangles = 0;
     float total_power = 0; // W, luminance
 };

@@ -17,7 +17,8 @@ constexpr double kTriangleCost = 1;
 /// State of the dynamic program for one binary subtree, bottom-up.
 struct Plan
 {
-    std::array<double, kWidth> cost{}; // [i]: least cost of representing it as a forest of at most i + 1 nodes or leaves
+    std::array<double, kWidth>
+        cost{}; // [i]: least cost of representing it as a forest of at most i + 1 nodes or leaves
     std::array<uint32_t, kMaxLeafTriangles> triangles{}; // of the whole subtree while it could still be one leaf
     uint32_t triangle_count = 0;                         // 0: too many for a leaf
 };

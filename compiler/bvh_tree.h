@@ -39,7 +39,8 @@ struct Box
 struct WideChoice
 {
     uint8_t share_of_node = 0; // where it becomes a wide node, its first child's part of the four; 0: it becomes a leaf
-    std::array<uint8_t, gpu::kBvhWidth - 1> share_of_forest{}; // [n - 2]: first child's part of n trees; 0: n - 1 suffice
+    std::array<uint8_t, gpu::kBvhWidth - 1>
+        share_of_forest{}; // [n - 2]: first child's part of n trees; 0: n - 1 suffice
 };
 
 struct BinaryNode

@@ -85,9 +85,10 @@ LightTables lightsOrDefault(const CompileOptions& options, const Bvh& bvh, Scene
                      (options.default_light == DefaultLight::kAuto && !chosen && need.dark);
     if (need.dark || need.dim || add)
         scene.warnings.push_back({WarningKind::kDefaultLight, "", need.sentence,
-                                  add        ? "it gets the default sky and sun (--default-light off leaves them out)"
-                                  : need.dark ? "every picture of it will be black (--default-light on adds a sky and a sun)"
-                                              : "pictures of it will be dark (--default-light on adds a sky and a sun)"});
+                                  add ? "it gets the default sky and sun (--default-light off leaves them out)"
+                                  : need.dark
+                                      ? "every picture of it will be black (--default-light on adds a sky and a sun)"
+                                      : "pictures of it will be dark (--default-light on adds a sky and a sun)"});
     if (!add)
         return lights;
     if (!scene.environment)
@@ -253,8 +254,9 @@ Result<CompileReport> runPipeline(const CompileOptions& options)
     watch.stage("textures", fmt::format("{} images, {} pages", scene.images.size(), textures.pages.size()));
 
     if (const Warnings damage = damageAmong(scene.warnings); options.strict && !damage.empty())
-        return damageError(damage, fmt::format("{} damaged; without --strict the package is made",
-                                               damage.size() == 1 ? "an item is" : fmt::format("{} items are", damage.size())));
+        return damageError(damage,
+                           fmt::format("{} damaged; without --strict the package is made",
+                                       damage.size() == 1 ? "an item is" : fmt::format("{} items are", damage.size())));
     report.warnings = scene.warnings;
     report.meta = makeMeta(options, scene, bvh, lights, textures, sky);
     noteInputs(file->files->list(), environment_content, *report.meta.provenance);

@@ -35,7 +35,7 @@ struct CompileOptions
     std::vector<CameraView> views{}; // in the file's coordinates; come before its own cameras
     DefaultLight default_light = DefaultLight::kAuto;
     bool strict = false; // damaged items of the scene are an error
-    int zstd_level = 0;              // 0: no compression
+    int zstd_level = 0;  // 0: no compression
     TextureCompression textures = TextureCompression::kBlocks;
     std::vector<std::string> text{}; // the options as given, for the package's provenance
     const Cache* cache = nullptr;    // of costly results; null: none

@@ -68,7 +68,8 @@ public:
                 slots_[slot] = entry;
                 return true;
             }
-            if ((slots_[slot] & kTagMask) == (hash & kTagMask) && keyOf(mesh, uint32_t(slots_[slot])) == keyOf(mesh, index))
+            if ((slots_[slot] & kTagMask) == (hash & kTagMask) &&
+                keyOf(mesh, uint32_t(slots_[slot])) == keyOf(mesh, index))
                 return false;
         }
     }
@@ -314,7 +315,8 @@ Result<WorldMesh> flatten(const ImportedScene& imported, ImportCounts& counts, W
     }
     if (beyond > 0)
         warnings.push_back({WarningKind::kBadGeometry, "",
-                            fmt::format("nodes move {} primitives beyond the range of numbers", beyond), "they are left out"});
+                            fmt::format("nodes move {} primitives beyond the range of numbers", beyond),
+                            "they are left out"});
     WorldMesh mesh = flattener.take();
     if (mesh.triangles.empty())
         return Error{ExitCode::kInvalid, "its default scene holds no triangles, so there is nothing to render"};
@@ -325,10 +327,11 @@ Result<WorldMesh> flatten(const ImportedScene& imported, ImportCounts& counts, W
                                         flattener.flippedTriangles(), mesh.triangles.size()),
                             ""});
     if (flattener.repairedNormals() > 0)
-        warnings.push_back({WarningKind::kBadGeometry, "",
-                            fmt::format("{} vertex normals have no direction and were replaced by that of their triangle",
-                                        flattener.repairedNormals()),
-                            ""});
+        warnings.push_back(
+            {WarningKind::kBadGeometry, "",
+             fmt::format("{} vertex normals have no direction and were replaced by that of their triangle",
+                         flattener.repairedNormals()),
+             ""});
     if (flattener.repairedValues() > 0)
         warnings.push_back({WarningKind::kBadGeometry, "",
                             fmt::format("{} texture coordinates or vertex colours are not finite and became 0",

@@ -14,8 +14,7 @@ using Bytes = std::vector<unsigned char>;
 namespace
 {
 /// Reads buffer `i`, exactly byteLength bytes of it.
-Result<Bytes> readBuffer(const json& buffer, size_t i, const std::optional<ByteView>& bin,
-                         InputFiles& files)
+Result<Bytes> readBuffer(const json& buffer, size_t i, const std::optional<ByteView>& bin, InputFiles& files)
 {
     const auto length = buffer.find("byteLength");
     if (length == buffer.end() || !length->is_number_unsigned() || *length == 0u)
@@ -98,16 +97,19 @@ std::vector<Result<Bytes>> decodeAll(const std::vector<MeshoptView>& views, cons
         }
         decoded += view.count * view.stride;
         if (decoded > kMeshoptMostRatio * loaded) // several views of one stream
-            results.push_back(Error{ExitCode::kInvalid, fmt::format("its meshopt-compressed buffer views give more than {} "
-                                                                    "times the bytes that are there",
-                                                                    kMeshoptMostRatio)});
+            results.push_back(
+                Error{ExitCode::kInvalid, fmt::format("its meshopt-compressed buffer views give more than {} "
+                                                      "times the bytes that are there",
+                                                      kMeshoptMostRatio)});
         else
             results.push_back(Bytes());
     }
-    parallelFor(views.size(), [&](size_t i) {
-        if (results[i])
-            results[i] = decodeMeshopt(views[i], buffers[views[i].buffer]);
-    });
+    parallelFor(views.size(),
+                [&](size_t i)
+                {
+                    if (results[i])
+                        results[i] = decodeMeshopt(views[i], buffers[views[i].buffer]);
+                });
     return results;
 }
 

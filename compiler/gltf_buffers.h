@@ -13,5 +13,5 @@
 /// One that is missing or damaged is one byte long, with a warning, so that what lies in it cannot be read.
 /// @return one element a buffer, exactly its byteLength; kUnsupported where one is of a kind that is not read, or
 ///         where a view can neither be decoded nor is there uncompressed
-Result<std::vector<std::vector<unsigned char>>> loadBuffers(GltfDocument& document,
-                                                            InputFiles& files, Warnings& warnings);
+Result<std::vector<std::vector<unsigned char>>> loadBuffers(GltfDocument& document, InputFiles& files,
+                                                            Warnings& warnings);

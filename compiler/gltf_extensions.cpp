@@ -84,8 +84,8 @@ Status checkExtensions(const nlohmann::json& document, Warnings& warnings)
         if (!contains(kHonoured, name) && !contains(kHarmless, name))
             dropped.push_back(name);
     if (!dropped.empty())
-        warnings.push_back(
-            {WarningKind::kLeftOut, "/extensionsUsed",
-             fmt::format("extensions that are not supported are left out: {}", fmt::join(dropped, ", ")), ""});
+        warnings.push_back({WarningKind::kLeftOut, "/extensionsUsed",
+                            fmt::format("extensions that are not supported are left out: {}", fmt::join(dropped, ", ")),
+                            ""});
     return Success{};
 }

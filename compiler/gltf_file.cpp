@@ -153,7 +153,8 @@ Result<GltfFile> readGltf(const std::filesystem::path& path)
         return status.error();
     if (document.contains("animations"))
         file.warnings.push_back({WarningKind::kLeftOut, "",
-                                 "animations are not played: the scene is compiled in the pose that it shows at rest", ""});
+                                 "animations are not played: the scene is compiled in the pose that it shows at rest",
+                                 ""});
     document.erase("animations");
     file.skins = takeSkins(document);
 

@@ -282,7 +282,8 @@ void readIridescence(const Value& iridescence, TextureReader& textures, gpu::Mat
     m.iridescence = unitRange(number(iridescence, "iridescenceFactor", 0));
     if (m.iridescence == 0)
         return;
-    const auto thickness = [&](const char* key, double fallback) { return float(std::max(number(iridescence, key, fallback), 0.0)); };
+    const auto thickness = [&](const char* key, double fallback)
+    { return float(std::max(number(iridescence, key, fallback), 0.0)); };
     m.iridescence_ior = float(std::max(number(iridescence, "iridescenceIor", 1.3), 1.0));
     m.iridescence_thickness_minimum = thickness("iridescenceThicknessMinimum", 100);
     m.iridescence_thickness_maximum = thickness("iridescenceThicknessMaximum", 400);
@@ -386,7 +387,7 @@ bool hasTransparentTexel(const TextureImage& image)
 } // namespace
 
 void importMaterials(const GltfFile& file, std::span<const int> used, SceneData& scene,
-                       std::vector<ImageRequest>& requests)
+                     std::vector<ImageRequest>& requests)
 {
     TextureReader textures(file, scene, requests);
     bool lost_glossiness = false;
@@ -407,7 +408,8 @@ void importMaterials(const GltfFile& file, std::span<const int> used, SceneData&
     }
     if (textures.unsupportedTexCoord())
         scene.warnings.push_back({WarningKind::kApproximated, "",
-                                  "some textures use a coordinate set above TEXCOORD_1; they are drawn with TEXCOORD_0", ""});
+                                  "some textures use a coordinate set above TEXCOORD_1; they are drawn with TEXCOORD_0",
+                                  ""});
     if (lost_glossiness)
         scene.warnings.push_back(
             {WarningKind::kLeftOut, "",
@@ -441,8 +443,9 @@ void takeImages(std::vector<DecodedImage> decoded, SceneData& scene)
         }
         else if (const auto found = stand_ins.find(image.source); found != stand_ins.end())
         {
-            scene.warnings.push_back({WarningKind::kUnreadable, fmt::format("/images/{}", image.source), image.error->message,
-                                      fmt::format("in its place: {}", fmt::join(found->second, ", ")), image.error->code});
+            scene.warnings.push_back(
+                {WarningKind::kUnreadable, fmt::format("/images/{}", image.source), image.error->message,
+                 fmt::format("in its place: {}", fmt::join(found->second, ", ")), image.error->code});
             stand_ins.erase(found); // an image as colour and as data is one
         }
     }
@@ -480,8 +483,9 @@ std::vector<uint32_t> materialTriangleFlags(const SceneData& scene)
     {
         uint32_t f = 0;
         if ((m.flags & kAlpha) != 0)
-            if (m.alpha < 1 || ((m.flags & gpu::kMaterialAlphaMask) != 0 && m.alpha_cutoff > 1) || (m.base_color_texture != gpu::kNone &&
-                                hasTransparentTexel(scene.images[scene.texture_uses[m.base_color_texture].image])))
+            if (m.alpha < 1 || ((m.flags & gpu::kMaterialAlphaMask) != 0 && m.alpha_cutoff > 1) ||
+                (m.base_color_texture != gpu::kNone &&
+                 hasTransparentTexel(scene.images[scene.texture_uses[m.base_color_texture].image])))
                 f |= gpu::kTriangleAlpha;
         if ((m.flags & gpu::kMaterialThin) != 0 && m.transmission > 0 && m.roughness < kSmooth &&
             m.metallic_roughness_texture == gpu::kNone)

@@ -53,13 +53,16 @@ std::optional<Error> dropBadTriangles(MeshPrimitive& mesh)
     const size_t total = mesh.triangles.size();
     const size_t missing = std::erase_if(mesh.triangles, [&](gpu::uvec3 t) { return !exists(t); });
     const size_t unplaced = std::erase_if(mesh.triangles, [&](gpu::uvec3 t) { return !placed(t); });
-    if (const auto good = std::find_if(mesh.positions.begin(), mesh.positions.end(), [](gpu::vec3 p) { return isFinite(p); });
+    if (const auto good =
+            std::find_if(mesh.positions.begin(), mesh.positions.end(), [](gpu::vec3 p) { return isFinite(p); });
         good != mesh.positions.end())
-        std::replace_if(mesh.positions.begin(), mesh.positions.end(), [](gpu::vec3 p) { return !isFinite(p); }, gpu::vec3(*good));
+        std::replace_if(
+            mesh.positions.begin(), mesh.positions.end(), [](gpu::vec3 p) { return !isFinite(p); }, gpu::vec3(*good));
     if (missing + unplaced == 0)
         return std::nullopt;
     return Error{ExitCode::kInvalid,
-                 missing > 0 ? fmt::format("{} of {} triangles name vertices beyond the {} that there are", missing, total, count)
+                 missing > 0 ? fmt::format("{} of {} triangles name vertices beyond the {} that there are", missing,
+                                           total, count)
                              : fmt::format("{} of {} triangles have vertices that are not finite", unplaced, total)};
 }
 
@@ -85,7 +88,8 @@ void applyShape(const tinygltf::Model& model, const tinygltf::Primitive& primiti
         if (const Status status = applyMorphTargets(model, primitive, shape.morph_weights, morphed); status)
             result.mesh = std::move(morphed);
         else
-            warnings.push_back(warningOf(WarningKind::kBadGeometry, status.error(), pointer, "it is drawn without morphing"));
+            warnings.push_back(
+                warningOf(WarningKind::kBadGeometry, status.error(), pointer, "it is drawn without morphing"));
     }
     if (shape.joint_count == 0)
         return;
@@ -93,7 +97,8 @@ void applyShape(const tinygltf::Model& model, const tinygltf::Primitive& primiti
     if (influences)
         result.influences = std::move(*influences);
     else
-        warnings.push_back(warningOf(WarningKind::kBadGeometry, influences.error(), pointer, "it is drawn where its node is"));
+        warnings.push_back(
+            warningOf(WarningKind::kBadGeometry, influences.error(), pointer, "it is drawn where its node is"));
 }
 } // namespace
 

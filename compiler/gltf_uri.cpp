@@ -151,8 +151,7 @@ std::vector<std::string> fileNames(const std::string& uri)
 }
 
 /// The name of a file below `folder` that is `name` but for its case, if one file alone has it. @param name relative
-std::optional<std::string> findInAnyCase(const std::filesystem::path& folder,
-                                                   const std::filesystem::path& name)
+std::optional<std::string> findInAnyCase(const std::filesystem::path& folder, const std::filesystem::path& name)
 {
     const std::filesystem::path start = folder.empty() ? std::filesystem::path(".") : folder;
     std::filesystem::path found = start;

@@ -12,7 +12,8 @@ using nlohmann::json;
 namespace
 {
 constexpr double kPi = std::numbers::pi;
-constexpr double kUnbounded = 1e30; // far above any use; its products with factors and areas are single-precision numbers
+constexpr double kUnbounded =
+    1e30; // far above any use; its products with factors and areas are single-precision numbers
 constexpr double kDefaultFov = kPi / 4;
 
 bool isNumber(const json& value)
@@ -27,7 +28,8 @@ std::string shown(const json& value)
 }
 
 /// Replaces a member's value and adds a warning; `stand_in` describes the new value.
-void replace(const JsonPlace& place, const char* key, const json& value, const std::string& stand_in, Warnings& warnings)
+void replace(const JsonPlace& place, const char* key, const json& value, const std::string& stand_in,
+             Warnings& warnings)
 {
     const json* old = place.find(key);
     const bool number = old != nullptr && isNumber(*old);
@@ -114,7 +116,8 @@ void repairSpot(const JsonPlace& spot, Warnings& warnings)
 struct Range
 {
     const char* key;
-    size_t length; // 1: a number, else an array of so many numbers; 0: a number or three (two extensions share the name)
+    size_t
+        length; // 1: a number, else an array of so many numbers; 0: a number or three (two extensions share the name)
     double low;
     double high;
     bool keeps_more = false; // a greater number is wrong, but has a plain meaning
@@ -166,7 +169,8 @@ void repairFactor(const JsonPlace& place, const Range& range, Warnings& warnings
     const json old = value;
     for (json& channel : value)
         channel = std::clamp(channel.get<double>(), range.low, range.keeps_more ? kUnbounded : range.high);
-    const bool more = range.keeps_more && std::any_of(value.begin(), value.end(), [&](const json& v) { return v > range.high; });
+    const bool more =
+        range.keeps_more && std::any_of(value.begin(), value.end(), [&](const json& v) { return v > range.high; });
     if (value != old || more)
         warnings.push_back({WarningKind::kOutOfRange, place.at(range.key),
                             fmt::format("{} is {}, outside {:g} to {:g}", range.key, shown(old), range.low, range.high),
@@ -200,8 +204,8 @@ bool repairNumber(const JsonPlace& place, const char* key, double low, double hi
         return false;
     if (!isNumber(*value))
     {
-        warnings.push_back({WarningKind::kMalformed, place.at(key), fmt::format("{} is {} and no number", key, shown(*value)),
-                            "its default counts"});
+        warnings.push_back({WarningKind::kMalformed, place.at(key),
+                            fmt::format("{} is {} and no number", key, shown(*value)), "its default counts"});
         place.object.erase(key);
         return false;
     }
@@ -222,8 +226,8 @@ bool repairNumbers(const JsonPlace& place, const char* key, size_t length, const
         return false;
     if (value->is_array() && value->size() == length && std::all_of(value->begin(), value->end(), isNumber))
         return true;
-    warnings.push_back({WarningKind::kMalformed, place.at(key), fmt::format("{} is not an array of {} numbers", key, length),
-                        stand_in});
+    warnings.push_back({WarningKind::kMalformed, place.at(key),
+                        fmt::format("{} is not an array of {} numbers", key, length), stand_in});
     place.object.erase(key);
     return false;
 }
@@ -237,7 +241,8 @@ bool repairCamera(const JsonPlace& camera, Warnings& warnings)
         if (type == nullptr || *type != kind || lens == nullptr || !lens->is_object())
             continue;
         const JsonPlace place{*lens, camera.at(kind)};
-        std::string_view(kind) == "perspective" ? repairPerspective(place, warnings) : repairOrthographic(place, warnings);
+        std::string_view(kind) == "perspective" ? repairPerspective(place, warnings)
+                                                : repairOrthographic(place, warnings);
         return true;
     }
     warnings.push_back({WarningKind::kMalformed, camera.pointer,
@@ -269,8 +274,8 @@ bool repairLight(const JsonPlace& light, Warnings& warnings)
     json* spot = light.find("spot");
     if (spot == nullptr || !spot->is_object())
     {
-        warnings.push_back({WarningKind::kMalformed, light.pointer, "a spot light has no cone",
-                            "its angles are 0 and 45 degrees"});
+        warnings.push_back(
+            {WarningKind::kMalformed, light.pointer, "a spot light has no cone", "its angles are 0 and 45 degrees"});
         light.object["spot"] = json::object();
     }
     repairSpot({light.object["spot"], light.at("spot")}, warnings);
@@ -293,8 +298,8 @@ void repairMaterialValues(const JsonPlace& material, Warnings& warnings)
     }
     if (const json* sides = material.find("doubleSided"); sides != nullptr && !sides->is_boolean())
     {
-        warnings.push_back({WarningKind::kMalformed, material.at("doubleSided"), "doubleSided is neither true nor false",
-                            "its default counts"});
+        warnings.push_back({WarningKind::kMalformed, material.at("doubleSided"),
+                            "doubleSided is neither true nor false", "its default counts"});
         material.object.erase("doubleSided");
     }
     for (auto& [key, value] : material.object.items())
@@ -309,8 +314,8 @@ void repairSampler(const JsonPlace& sampler, Warnings& warnings)
         const json* value = sampler.find(key);
         if (value == nullptr || std::any_of(allowed.begin(), allowed.end(), [&](int v) { return *value == v; }))
             return;
-        warnings.push_back({WarningKind::kMalformed, sampler.at(key), fmt::format("{} {} does not exist", key, shown(*value)),
-                            stand_in});
+        warnings.push_back({WarningKind::kMalformed, sampler.at(key),
+                            fmt::format("{} {} does not exist", key, shown(*value)), stand_in});
         sampler.object.erase(key);
     };
     check("magFilter", {9728, 9729}, "it is linear");

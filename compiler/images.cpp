@@ -35,11 +35,19 @@ std::string_view formatName(std::string_view start)
         std::string_view name;
     };
     using namespace std::string_view_literals;
-    constexpr Magic kMagics[] = {{0, "BM"sv, "a BMP"},          {0, "GIF8"sv, "a GIF"},
-                                 {0, "DDS "sv, "a DDS"},          {4, "ftypavif"sv, "an AVIF"},  {4, "ftypheic"sv, "a HEIC"},
-                                 {0, "II*\0"sv, "a TIFF"},        {0, "MM\0*"sv, "a TIFF"},      {0, "8BPS"sv, "a PSD"},
-                                 {0, "\x76\x2F\x31\x01"sv, "an OpenEXR"}, {0, "#?RADIANCE"sv, "a Radiance"},
-                                 {0, "\xFF\x0A"sv, "a JPEG XL"}, {4, "JXL "sv, "a JPEG XL"},    {4, "jP  "sv, "a JPEG 2000"}};
+    constexpr Magic kMagics[] = {{0, "BM"sv, "a BMP"},
+                                 {0, "GIF8"sv, "a GIF"},
+                                 {0, "DDS "sv, "a DDS"},
+                                 {4, "ftypavif"sv, "an AVIF"},
+                                 {4, "ftypheic"sv, "a HEIC"},
+                                 {0, "II*\0"sv, "a TIFF"},
+                                 {0, "MM\0*"sv, "a TIFF"},
+                                 {0, "8BPS"sv, "a PSD"},
+                                 {0, "\x76\x2F\x31\x01"sv, "an OpenEXR"},
+                                 {0, "#?RADIANCE"sv, "a Radiance"},
+                                 {0, "\xFF\x0A"sv, "a JPEG XL"},
+                                 {4, "JXL "sv, "a JPEG XL"},
+                                 {4, "jP  "sv, "a JPEG 2000"}};
     for (const Magic& magic : kMagics)
         if (start.size() >= magic.at && start.substr(magic.at).starts_with(magic.bytes))
             return magic.name;
@@ -54,7 +62,8 @@ std::string decoderReason(bool png)
         return "it is damaged or cut short";
     if (std::string_view(reason) != "unknown image type")
         return fmt::format("it is damaged or of a rare kind ({})", reason);
-    return png ? "its PNG header is damaged" : "it is cut short, or a JPEG of a kind that is not read (12-bit, arithmetic, lossless)";
+    return png ? "its PNG header is damaged"
+               : "it is cut short, or a JPEG of a kind that is not read (12-bit, arithmetic, lossless)";
 }
 
 Result<ByteView> imageBytes(const GltfFile& file, const GltfImage& image, Bytes& storage)
@@ -140,8 +149,9 @@ Status decodeKtx2File(const ByteView& bytes, const GltfImage& image, std::atomic
     Result<Ktx2Image> decoded = decodeKtx2(std::as_bytes(std::span(bytes.data, bytes.bytes)),
                                            [&](uint32_t width, uint32_t height)
                                            {
-                                               Status status = reserve(int(std::min(width, kMaxSide + 1)),
-                                                                       int(std::min(height, kMaxSide + 1)), image, texels, out);
+                                               Status status =
+                                                   reserve(int(std::min(width, kMaxSide + 1)),
+                                                           int(std::min(height, kMaxSide + 1)), image, texels, out);
                                                refused = !status;
                                                return status;
                                            });
@@ -174,9 +184,8 @@ Result<TextureImage> decode(const GltfFile& file, const GltfImage& image, std::a
     Bytes storage;
     const Result<ByteView> bytes = imageBytes(file, image, storage);
     if (!bytes)
-        return Error{bytes.error().code,
-                     fmt::format("texture \"{}\": {}", image.name.substr(0, 200),
-                                 withoutFolder(bytes.error().message, file.files->folder()))};
+        return Error{bytes.error().code, fmt::format("texture \"{}\": {}", image.name.substr(0, 200),
+                                                     withoutFolder(bytes.error().message, file.files->folder()))};
     const std::string_view start(reinterpret_cast<const char*>(bytes->data), std::min<size_t>(bytes->bytes, 16));
     TextureImage out;
     out.name = image.name;
@@ -189,9 +198,10 @@ Result<TextureImage> decode(const GltfFile& file, const GltfImage& image, std::a
         return out;
     }
     if (const std::string_view name = formatName(start); !name.empty())
-        return Error{ExitCode::kUnsupported, fmt::format("texture \"{}\" is {} file, which is not read; export it as PNG, "
-                                                         "JPEG, WebP or KTX2",
-                                                         image.name.substr(0, 200), name)};
+        return Error{ExitCode::kUnsupported,
+                     fmt::format("texture \"{}\" is {} file, which is not read; export it as PNG, "
+                                 "JPEG, WebP or KTX2",
+                                 image.name.substr(0, 200), name)};
     const bool webp = start.size() >= 12 && start.starts_with("RIFF") && start.substr(8, 4) == "WEBP";
     const bool png_or_jpeg = start.starts_with("\x89PNG") || start.starts_with("\xFF\xD8");
     if (!webp && !png_or_jpeg)

@@ -17,7 +17,7 @@ struct ImageRequest
 
 struct DecodedImage
 {
-    int source = 0; // as requested
+    int source = 0;             // as requested
     TextureImage image;         // empty where there is an error
     std::optional<Error> error; // kInvalid: it does not decode, kIo: a missing file, kUnsupported: another format
 };

@@ -124,7 +124,8 @@ std::map<int, SkinPose> poseSkins(const GltfFile& file, const std::vector<Shape>
             continue;
         }
         damaged.insert(shape.skinned->skin);
-        warnings.push_back(warningOf(WarningKind::kBadGeometry, pose.error(), fmt::format("/skins/{}", shape.skinned->skin),
+        warnings.push_back(warningOf(WarningKind::kBadGeometry, pose.error(),
+                                     fmt::format("/skins/{}", shape.skinned->skin),
                                      "its meshes are drawn where their nodes are"));
     }
     return poses;
@@ -155,7 +156,8 @@ void readGeometry(const tinygltf::Model& model, const SkinPose* pose, Job& job)
     {
         job.weightless_vertices = primitive.influences.weightless_vertices;
         job.lacks_joints = !job.source->attributes.contains("JOINTS_0");
-        if (const Status status = skinMesh(*pose, primitive.influences, shape.skinned->to_world, primitive.mesh); !status)
+        if (const Status status = skinMesh(*pose, primitive.influences, shape.skinned->to_world, primitive.mesh);
+            !status)
             return leaveOut(status.error());
     }
     job.result = std::move(primitive.mesh);
@@ -182,7 +184,8 @@ void completeGeometry(const SceneData& scene, Job& job)
     const gpu::Material& material = scene.materials[job.result->material];
     const uint32_t map = tangentTexture(material);
     if ((map != gpu::kNone || material.anisotropy > 0) && job.result->tangents.empty())
-        job.generated_tangents = generateTangents(*job.result, map == gpu::kNone ? TextureUse{} : scene.texture_uses[map]);
+        job.generated_tangents =
+            generateTangents(*job.result, map == gpu::kNone ? TextureUse{} : scene.texture_uses[map]);
 }
 
 void noteGaps(const std::vector<Job>& jobs, SceneData& scene)
@@ -191,7 +194,8 @@ void noteGaps(const std::vector<Job>& jobs, SceneData& scene)
     uint64_t without_joints = 0;
     for (const Job& job : jobs)
     {
-        if (!job.result && job.warnings.empty() && !job.source->attributes.empty()) // else it was damaged, and that is said
+        if (!job.result && job.warnings.empty() &&
+            !job.source->attributes.empty()) // else it was damaged, and that is said
             ++scene.counts.dropped_primitives;
         scene.counts.generated_normals += job.generated_normals;
         scene.counts.generated_tangents += job.generated_tangents;

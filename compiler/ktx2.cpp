@@ -29,7 +29,13 @@ struct Level
     uint64_t offset, bytes, raw_bytes;
 };
 
-enum Supercompression : uint32_t { kNone = 0, kBasisLz = 1, kZstd = 2, kZlib = 3 };
+enum Supercompression : uint32_t
+{
+    kNone = 0,
+    kBasisLz = 1,
+    kZstd = 2,
+    kZlib = 3
+};
 
 template <typename... Args>
 Error invalid(fmt::format_string<Args...> format, Args&&... args)
@@ -72,8 +78,8 @@ Result<Header> readHeader(const Reader& file)
     if (!file.holds(0, kHeaderBytes))
         return invalid("it ends within the header of a KTX2 file");
     Header h{};
-    uint32_t* const words[] = {&h.vk_format, &h.type_size, &h.width, &h.height, &h.depth, &h.layers, &h.faces, &h.levels,
-                               &h.supercompression, &h.dfd_offset};
+    uint32_t* const words[] = {&h.vk_format, &h.type_size, &h.width,  &h.height,           &h.depth,
+                               &h.layers,    &h.faces,     &h.levels, &h.supercompression, &h.dfd_offset};
     for (size_t i = 0; i < std::size(words); ++i)
         *words[i] = file.at<uint32_t>(kIdentifier.size() + 4 * i);
     if (h.width == 0)
@@ -97,13 +103,16 @@ Error unsupportedFormat(const Header& header, const Reader& file)
     constexpr uint32_t kEtc1s = 163, kUastc = 166;
     const uint32_t model = file.at<uint32_t>(uint64_t(header.dfd_offset) + 12) & 0xff;
     if (header.supercompression == kBasisLz || (header.vk_format == 0 && model == kEtc1s))
-        return unsupported("it is KTX2 of Basis Universal ETC1S, which is not supported; export it as PNG, JPEG, WebP or "
-                           "uncompressed KTX2");
+        return unsupported(
+            "it is KTX2 of Basis Universal ETC1S, which is not supported; export it as PNG, JPEG, WebP or "
+            "uncompressed KTX2");
     if (header.vk_format == 0 && model == kUastc)
-        return unsupported("it is KTX2 of Basis Universal UASTC, which is not supported; export it as PNG, JPEG, WebP or "
-                           "uncompressed KTX2");
-    return unsupported("it is KTX2 of VkFormat {}, which is not supported; export it as PNG, JPEG, WebP or uncompressed KTX2",
-                       header.vk_format);
+        return unsupported(
+            "it is KTX2 of Basis Universal UASTC, which is not supported; export it as PNG, JPEG, WebP or "
+            "uncompressed KTX2");
+    return unsupported(
+        "it is KTX2 of VkFormat {}, which is not supported; export it as PNG, JPEG, WebP or uncompressed KTX2",
+        header.vk_format);
 }
 
 Result<std::vector<std::byte>> inflate(const Header& header, std::span<const std::byte> stored, uint64_t raw_bytes)
@@ -143,10 +152,12 @@ Result<Ktx2Image> decodeKtx2(std::span<const std::byte> bytes,
     if (!format || header->supercompression == kBasisLz)
         return unsupportedFormat(*header, file);
     if (header->supercompression > kZlib)
-        return unsupported("it is KTX2 of supercompression scheme {}, which is not supported", header->supercompression);
+        return unsupported("it is KTX2 of supercompression scheme {}, which is not supported",
+                           header->supercompression);
     const Level level{file.at<uint64_t>(kHeaderBytes), file.at<uint64_t>(kHeaderBytes + 8),
                       file.at<uint64_t>(kHeaderBytes + 16)}; // the largest comes first
-    if (!file.holds(kHeaderBytes, uint64_t(24) * std::max(header->levels, 1u)) || !file.holds(level.offset, level.bytes))
+    if (!file.holds(kHeaderBytes, uint64_t(24) * std::max(header->levels, 1u)) ||
+        !file.holds(level.offset, level.bytes))
         return invalid("its KTX2 levels lie past the end of the file");
     if (Status status = accept(header->width, header->height); !status)
         return status.error();

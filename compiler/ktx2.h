@@ -11,9 +11,9 @@
 struct Ktx2Image
 {
     uint32_t width = 0, height = 0;
-    std::vector<uint8_t> texels;     // [4 * width * height] RGBA8, row 0 on top
-    std::vector<uint16_t> deep;      // the same in 16 bits where the file has more than 8, else empty
-    bool linear_light = false;       // floats: colours are light, not sRGB-encoded; clamped to 0 .. 1
+    std::vector<uint8_t> texels; // [4 * width * height] RGBA8, row 0 on top
+    std::vector<uint16_t> deep;  // the same in 16 bits where the file has more than 8, else empty
+    bool linear_light = false;   // floats: colours are light, not sRGB-encoded; clamped to 0 .. 1
 };
 
 /// Whether the bytes start like a KTX 2.0 file.

@@ -136,12 +136,14 @@ blocks::Texels decodeBlock(const Ktx2Format& format, const std::byte* block)
             texels[i][3] = alpha[i][0];
         return texels;
     }
-    case Ktx2Kind::kBc4: return blocks::decodeBc4(half);
+    case Ktx2Kind::kBc4:
+        return blocks::decodeBc4(half);
     case Ktx2Kind::kBc5:
         texels = blocks::decodeBc5(std::span<const std::byte, 16>(block, 16));
         completeNormals(texels);
         return texels;
-    default: return blocks::decodeBc7(std::span<const std::byte, 16>(block, 16));
+    default:
+        return blocks::decodeBc7(std::span<const std::byte, 16>(block, 16));
     }
 }
 } // namespace
@@ -153,20 +155,31 @@ std::optional<Ktx2Format> ktx2Format(uint32_t vk_format)
         uint32_t unorm, other; // VkFormat, and of the sRGB or floating-point sibling
         Ktx2Format format;
     };
-    static constexpr std::array kEntries{
-        Entry{9, 15, {Ktx2Kind::kUnorm8, 1}},         Entry{16, 22, {Ktx2Kind::kUnorm8, 2}},
-        Entry{23, 29, {Ktx2Kind::kUnorm8, 3}},        Entry{30, 36, {Ktx2Kind::kUnorm8, 3, true}},
-        Entry{37, 43, {Ktx2Kind::kUnorm8, 4}},        Entry{44, 50, {Ktx2Kind::kUnorm8, 4, true}},
-        Entry{70, 70, {Ktx2Kind::kUnorm16, 1}},       Entry{77, 77, {Ktx2Kind::kUnorm16, 2}},
-        Entry{84, 84, {Ktx2Kind::kUnorm16, 3}},       Entry{91, 91, {Ktx2Kind::kUnorm16, 4}},
-        Entry{76, 76, {Ktx2Kind::kFloat16, 1}},       Entry{83, 83, {Ktx2Kind::kFloat16, 2}},
-        Entry{90, 90, {Ktx2Kind::kFloat16, 3}},       Entry{97, 97, {Ktx2Kind::kFloat16, 4}},
-        Entry{100, 100, {Ktx2Kind::kFloat32, 1}},     Entry{103, 103, {Ktx2Kind::kFloat32, 2}},
-        Entry{106, 106, {Ktx2Kind::kFloat32, 3}},     Entry{109, 109, {Ktx2Kind::kFloat32, 4}},
-        Entry{131, 132, {Ktx2Kind::kBc1, 4, false, false}}, Entry{133, 134, {Ktx2Kind::kBc1}},
-        Entry{135, 136, {Ktx2Kind::kBc2}},            Entry{137, 138, {Ktx2Kind::kBc3}},
-        Entry{139, 139, {Ktx2Kind::kBc4}},            Entry{141, 141, {Ktx2Kind::kBc5}},
-        Entry{145, 146, {Ktx2Kind::kBc7}}};
+    static constexpr std::array kEntries{Entry{9, 15, {Ktx2Kind::kUnorm8, 1}},
+                                         Entry{16, 22, {Ktx2Kind::kUnorm8, 2}},
+                                         Entry{23, 29, {Ktx2Kind::kUnorm8, 3}},
+                                         Entry{30, 36, {Ktx2Kind::kUnorm8, 3, true}},
+                                         Entry{37, 43, {Ktx2Kind::kUnorm8, 4}},
+                                         Entry{44, 50, {Ktx2Kind::kUnorm8, 4, true}},
+                                         Entry{70, 70, {Ktx2Kind::kUnorm16, 1}},
+                                         Entry{77, 77, {Ktx2Kind::kUnorm16, 2}},
+                                         Entry{84, 84, {Ktx2Kind::kUnorm16, 3}},
+                                         Entry{91, 91, {Ktx2Kind::kUnorm16, 4}},
+                                         Entry{76, 76, {Ktx2Kind::kFloat16, 1}},
+                                         Entry{83, 83, {Ktx2Kind::kFloat16, 2}},
+                                         Entry{90, 90, {Ktx2Kind::kFloat16, 3}},
+                                         Entry{97, 97, {Ktx2Kind::kFloat16, 4}},
+                                         Entry{100, 100, {Ktx2Kind::kFloat32, 1}},
+                                         Entry{103, 103, {Ktx2Kind::kFloat32, 2}},
+                                         Entry{106, 106, {Ktx2Kind::kFloat32, 3}},
+                                         Entry{109, 109, {Ktx2Kind::kFloat32, 4}},
+                                         Entry{131, 132, {Ktx2Kind::kBc1, 4, false, false}},
+                                         Entry{133, 134, {Ktx2Kind::kBc1}},
+                                         Entry{135, 136, {Ktx2Kind::kBc2}},
+                                         Entry{137, 138, {Ktx2Kind::kBc3}},
+                                         Entry{139, 139, {Ktx2Kind::kBc4}},
+                                         Entry{141, 141, {Ktx2Kind::kBc5}},
+                                         Entry{145, 146, {Ktx2Kind::kBc7}}};
     for (const Entry& entry : kEntries)
         if (vk_format == entry.unorm || vk_format == entry.other)
             return entry.format;

@@ -32,9 +32,18 @@ inline Lanes operator*(const Lanes& a, const Lanes& b)
 {
     return {{a.v[0] * b.v[0], a.v[1] * b.v[1], a.v[2] * b.v[2], a.v[3] * b.v[3]}};
 }
-inline Lanes operator+(const Lanes& a, float b) { return a + Lanes::all(b); }
-inline Lanes operator-(const Lanes& a, float b) { return a - Lanes::all(b); }
-inline Lanes operator*(const Lanes& a, float b) { return a * Lanes::all(b); }
+inline Lanes operator+(const Lanes& a, float b)
+{
+    return a + Lanes::all(b);
+}
+inline Lanes operator-(const Lanes& a, float b)
+{
+    return a - Lanes::all(b);
+}
+inline Lanes operator*(const Lanes& a, float b)
+{
+    return a * Lanes::all(b);
+}
 
 inline Lanes clamp(const Lanes& a, float low, float high)
 {

@@ -140,7 +140,8 @@ std::vector<Point> surfaces(const WorldMesh& mesh)
     for (size_t i = 0; i < mesh.triangles.size(); i += stride)
     {
         const gpu::uvec3 t = mesh.triangles[i];
-        const Vec3d a = toDouble(mesh.positions[t.x]), b = toDouble(mesh.positions[t.y]), c = toDouble(mesh.positions[t.z]);
+        const Vec3d a = toDouble(mesh.positions[t.x]), b = toDouble(mesh.positions[t.y]),
+                    c = toDouble(mesh.positions[t.z]);
         const Vec3d normal = unitOrZero(cross(b - a, c - a));
         points.push_back({(a + b + c) * (1.0 / 3), normal});
         points.push_back({(a + b + c) * (1.0 / 3), normal * -1});
@@ -223,7 +224,8 @@ double irradiance(const LightTables& lights, size_t i, const Point& point, doubl
     if (light.kind == gpu::kLightDirectional)
         return luminance(light.emission);
     const bool local = light.kind == gpu::kLightPoint || light.kind == gpu::kLightSpot;
-    const Vec3d place = local ? toDouble(light.p0) : (toDouble(light.p0) + toDouble(light.p1) + toDouble(light.p2)) * (1.0 / 3);
+    const Vec3d place =
+        local ? toDouble(light.p0) : (toDouble(light.p0) + toDouble(light.p1) + toDouble(light.p2)) * (1.0 / 3);
     const double squared = dot(place - point.place, place - point.place);
     const Vec3d towards = unitOrZero(place - point.place);
     const double facing = std::max(0.0, dot(point.normal, towards));
@@ -281,12 +283,14 @@ double bestQuarter(const std::vector<Point>& points, const LightTables& lights, 
 /// "its only light is ...": the strongest.
 std::string describe(const SceneData& scene, const LightTables& lights)
 {
-    const size_t strongest = size_t(std::max_element(lights.powers.begin(), lights.powers.end()) - lights.powers.begin());
+    const size_t strongest =
+        size_t(std::max_element(lights.powers.begin(), lights.powers.end()) - lights.powers.begin());
     const gpu::Light& light = lights.lights[strongest];
-    const std::string source = light.triangle != gpu::kNone
-                                   ? fmt::format("material \"{}\"", scene.material_names[scene.mesh.materials[light.triangle]])
-                               : light.kind == gpu::kLightEnvironment ? "the environment"
-                                                                      : "a lamp";
+    const std::string source =
+        light.triangle != gpu::kNone
+            ? fmt::format("material \"{}\"", scene.material_names[scene.mesh.materials[light.triangle]])
+        : light.kind == gpu::kLightEnvironment ? "the environment"
+                                               : "a lamp";
     return lights.lights.size() == 1 || light.triangle != gpu::kNone ? source : source + " and others";
 }
 } // namespace
@@ -315,8 +319,9 @@ LightNeed judgeLight(const SceneData& scene, const Bvh& bvh, const LightTables& 
     need.dark = need.radiance < kDark;
     need.dim = need.radiance < kDim;
     if (need.dim)
-        need.sentence = fmt::format("the scene's light ({}) reaches little of what is seen: but for a quarter, surfaces reflect "
-                                    "less than {:.2g} W/(m^2 sr), and pictures show nothing below {:.2g}",
-                                    describe(scene, lights), need.radiance, kDark);
+        need.sentence =
+            fmt::format("the scene's light ({}) reaches little of what is seen: but for a quarter, surfaces reflect "
+                        "less than {:.2g} W/(m^2 sr), and pictures show nothing below {:.2g}",
+                        describe(scene, lights), need.radiance, kDark);
     return need;
 }

@@ -7,9 +7,10 @@
 
 struct LightNeed
 {
-    double radiance = 0; // W/(m^2 sr), luminance: the lower bound of what the brightest quarter of the visible points reflects
-    bool dark = false;   // the player's default display transform rounds that to black
-    bool dim = false;    // ... shows it as 8 of 255 at most
+    double radiance =
+        0; // W/(m^2 sr), luminance: the lower bound of what the brightest quarter of the visible points reflects
+    bool dark = false;    // the player's default display transform rounds that to black
+    bool dim = false;     // ... shows it as 8 of 255 at most
     std::string sentence; // a full sentence if dark or dim is set
 };
 

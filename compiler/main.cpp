@@ -83,7 +83,8 @@ void declare(CLI::App& app, Arguments& a)
     app.add_option("--cache-size", a.cache_bytes, "Size to which the folder is trimmed (k, m, g, ...)")
         ->transform(CLI::AsSizeValue(false))
         ->default_str("4g");
-    app.add_option("-j,--jobs", a.threads, "Total number of threads (default: as many as cores)")->check(CLI::Range(1, 1024));
+    app.add_option("-j,--jobs", a.threads, "Total number of threads (default: as many as cores)")
+        ->check(CLI::Range(1, 1024));
     app.add_flag("-f,--force", a.force, "Compile up-to-date packages, too");
     app.add_flag("-q,--quiet", a.quiet, "Print errors only");
     app.set_version_flag("--version", "lumicut-compile " LUMICUT_VERSION);
@@ -139,7 +140,8 @@ Status parseEnvironment(const Arguments& a, CompileOptions& options)
             return Error{ExitCode::kUsage, fmt::format("--env-scale: {} (FACTOR)", factor.error().message)};
         options.environment_scale = float(factor->front());
         if (!(options.environment_scale > 0) || !std::isfinite(options.environment_scale))
-            return Error{ExitCode::kUsage, fmt::format("--env-scale \"{}\" is not a positive number", a.environment_scale)};
+            return Error{ExitCode::kUsage,
+                         fmt::format("--env-scale \"{}\" is not a positive number", a.environment_scale)};
     }
     return Success{};
 }
@@ -147,8 +149,8 @@ Status parseEnvironment(const Arguments& a, CompileOptions& options)
 /// Options that shape the package, in the order of their declaration; paths without folders.
 std::vector<std::string> provenance(const CLI::App& app)
 {
-    static const std::set<std::string> kLeaveItAsItIs{"--help",       "--version", "--output", "--report", "--deps",
-                                                      "--cache",      "--cache-size", "--jobs",   "--force",  "--quiet"};
+    static const std::set<std::string> kLeaveItAsItIs{"--help",  "--version",    "--output", "--report", "--deps",
+                                                      "--cache", "--cache-size", "--jobs",   "--force",  "--quiet"};
     static const std::set<std::string> kPaths{"--env"};
     std::vector<std::string> text;
     for (const CLI::Option* option : app.get_options())
@@ -228,7 +230,8 @@ Result<std::filesystem::path> placeFor(const std::filesystem::path& scene, const
     if (fs::exists(given, problem) && !fs::is_directory(given, problem))
         return Error{ExitCode::kUsage, "it is a file; several scenes need a folder", given};
     if (several && !given.ends_with('/') && fs::path(given).extension() == suffix)
-        return Error{ExitCode::kUsage, fmt::format("several scenes need a folder; a folder of this name ends in /"), given};
+        return Error{ExitCode::kUsage, fmt::format("several scenes need a folder; a folder of this name ends in /"),
+                     given};
     fs::create_directories(given, problem);
     if (problem)
         return Error{ExitCode::kIo, fmt::format("the folder cannot be made: {}", problem.message()), given};
@@ -262,8 +265,9 @@ Result<CompileManyOptions> toJobs(const CLI::App& app, const Arguments& a)
             job.options.output = *place;
         }
         if (const auto [other, is_new] = taken.try_emplace(job.options.output.lexically_normal(), scene); !is_new)
-            return Error{ExitCode::kUsage, fmt::format("its package would be the same file as that of \"{}\": {}",
-                                                       other->second, job.options.output.string()),
+            return Error{ExitCode::kUsage,
+                         fmt::format("its package would be the same file as that of \"{}\": {}", other->second,
+                                     job.options.output.string()),
                          scene};
         if (a.report.empty())
             continue;
@@ -289,8 +293,9 @@ Result<CompileManyOptions> toJobs(const CLI::App& app, const Arguments& a)
 int main(int argc, char** argv)
 {
     CLI::App app{"Compiles glTF scenes into packages for lumicut-play.", "lumicut-compile"};
-    app.footer("Exit codes: 0 ok, 1 usage, 2 I/O, 3 invalid scene, 4 out of memory, 5 unsupported; of several scenes the\n"
-               "first that fails decides, and the others are compiled.");
+    app.footer(
+        "Exit codes: 0 ok, 1 usage, 2 I/O, 3 invalid scene, 4 out of memory, 5 unsupported; of several scenes the\n"
+        "first that fails decides, and the others are compiled.");
     Arguments arguments;
     declare(app, arguments);
     addDocumentation(app);

@@ -5,8 +5,14 @@
 
 namespace
 {
-double srgbToLinear(double s) { return s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4); }
-double linearToSrgb(double l) { return l <= 0.0031308 ? l * 12.92 : 1.055 * std::pow(l, 1 / 2.4) - 0.055; }
+double srgbToLinear(double s)
+{
+    return s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4);
+}
+double linearToSrgb(double l)
+{
+    return l <= 0.0031308 ? l * 12.92 : 1.055 * std::pow(l, 1 / 2.4) - 0.055;
+}
 
 constexpr uint32_t kSteps = 65535; // of the tables of 16 bits
 
@@ -33,7 +39,10 @@ const SrgbTables& srgbTables()
     return tables;
 }
 
-uint32_t half(uint32_t side) { return std::max(side / 2, 1u); }
+uint32_t half(uint32_t side)
+{
+    return std::max(side / 2, 1u);
+}
 
 } // namespace
 
@@ -80,10 +89,9 @@ MipChain::Level MipChain::halved(uint32_t width, uint32_t height, const Texel& a
     for (uint32_t y = 0; y < out.height; ++y)
         for (uint32_t x = 0; x < out.width; ++x, to += 4)
         {
-            const std::array<std::array<float, 4>, 4> from{at(2 * x * right, 2 * y * down),
-                                                           at(2 * x * right + right, 2 * y * down),
-                                                           at(2 * x * right, 2 * y * down + down),
-                                                           at(2 * x * right + right, 2 * y * down + down)};
+            const std::array<std::array<float, 4>, 4> from{
+                at(2 * x * right, 2 * y * down), at(2 * x * right + right, 2 * y * down),
+                at(2 * x * right, 2 * y * down + down), at(2 * x * right + right, 2 * y * down + down)};
             for (size_t k = 0; k < 4; ++k)
                 to[k] = 0.25f * (from[0][k] + from[1][k] + from[2][k] + from[3][k]);
             if (!role_.covers || to[3] == 0)
@@ -104,10 +112,12 @@ MipChain::MipChain(const TextureImage& image, const TextureRole& role) : image_(
     while (levels_.back().width > 1 || levels_.back().height > 1)
     {
         const Level& last = levels_.back();
-        levels_.push_back(halved(last.width, last.height, [&last](uint32_t x, uint32_t y) {
-            const float* t = last.rgba.data() + 4 * (size_t(y) * last.width + x);
-            return std::array<float, 4>{t[0], t[1], t[2], t[3]};
-        }));
+        levels_.push_back(halved(last.width, last.height,
+                                 [&last](uint32_t x, uint32_t y)
+                                 {
+                                     const float* t = last.rgba.data() + 4 * (size_t(y) * last.width + x);
+                                     return std::array<float, 4>{t[0], t[1], t[2], t[3]};
+                                 }));
     }
     if (role_.coverage_cutoff > 0 && role_.coverage_cutoff <= 1)
         keepCoverage();

@@ -15,10 +15,10 @@ struct TextureImage
     std::string name; // for messages
     uint32_t width = 0;
     uint32_t height = 0;
-    bool srgb = false;           // base colour, emissive, specular colour
-    std::vector<uint8_t> texels; // [4 * width * height]
+    bool srgb = false;            // base colour, emissive, specular colour
+    std::vector<uint8_t> texels;  // [4 * width * height]
     std::vector<uint16_t> deep{}; // the same in 16 bits where the file has more than 8, else empty
-    bool linear_light = false;     // colours are linear light, whatever `srgb` says; until decodeImages() returns
+    bool linear_light = false;    // colours are linear light, whatever `srgb` says; until decodeImages() returns
 };
 
 /// One use of a texture by a material; becomes a gpu::TextureRef once images have found their page and layer.
@@ -72,8 +72,8 @@ struct CameraView
 {
     std::string name;
     Vec3d position{};
-    gpu::vec3 forward{0, 0, -1}; // unit
-    gpu::vec3 up{0, 1, 0};       // unit, orthogonal to forward
+    gpu::vec3 forward{0, 0, -1};   // unit
+    gpu::vec3 up{0, 1, 0};         // unit, orthogonal to forward
     float vertical_fov = 0;        // radians; 0: orthographic
     float orthographic_height = 0; // 0: perspective
     float near_plane = 0;          // distance along forward before which nothing is seen

@@ -36,10 +36,10 @@ struct Band
 std::array<float, 4> texelAt(const Band& band, uint32_t x, uint32_t y)
 {
     const uint32_t width = band.chain->width(band.level), height = band.chain->height(band.level);
-    std::array<float, 4> texel =
-        band.tiled ? band.chain->texel(band.level, (x + width - gpu::kTileBorder) % width,
-                                       (y + height - gpu::kTileBorder) % height)
-                   : band.chain->texel(band.level, std::min(x, width - 1), std::min(y, height - 1));
+    std::array<float, 4> texel = band.tiled
+                                     ? band.chain->texel(band.level, (x + width - gpu::kTileBorder) % width,
+                                                         (y + height - gpu::kTileBorder) % height)
+                                     : band.chain->texel(band.level, std::min(x, width - 1), std::min(y, height - 1));
     if (band.encoding == TextureEncoding::Bc5Unorm)
         normalizeTexel(texel);
     return texel;
@@ -77,8 +77,8 @@ void writeBlocks(const Band& band, uint32_t row)
 }
 
 /// One level as it goes into its page, in bands.
-void addBands(const TextureImage& image, const TextureRole& role, uint32_t level, const TexturePlace& place, TexturePage& page,
-              std::vector<Band>& bands)
+void addBands(const TextureImage& image, const TextureRole& role, uint32_t level, const TexturePlace& place,
+              TexturePage& page, std::vector<Band>& bands)
 {
     const auto across = [&](uint32_t side) { return package::unitsAcross(page.encoding, side); };
     const uint32_t unit_bytes = package::unitBytes(page.encoding);
@@ -101,7 +101,9 @@ void addBands(const TextureImage& image, const TextureRole& role, uint32_t level
         band.pitch = size_t(band.units_across) * unit_bytes;
         band.out = page.texels.data() + package::levelBytes(page.encoding, width, height) * place.layer;
         for (uint32_t i = 0; i < level; ++i)
-            band.out += package::levelBytes(page.encoding, gpu::levelSide(image.width, i), gpu::levelSide(image.height, i)) * page.layers;
+            band.out +=
+                package::levelBytes(page.encoding, gpu::levelSide(image.width, i), gpu::levelSide(image.height, i)) *
+                page.layers;
     }
     const uint32_t band_rows = std::max(kBandUnits / band.units_across, 1u);
     for (band.first_row = 0; band.first_row < rows; band.first_row += band_rows)
@@ -142,8 +144,8 @@ void forEachRow(const std::vector<Band>& bands, const Visit& visit)
 ContentHash workKey(const TextureImage& image, const TextureRole& role, const TexturePage& page)
 {
     return Hasher("texture")
-        .values(image.width, image.height, uint32_t(page.encoding), uint32_t(page.tiled), role.channels, uint32_t(role.normal),
-                uint32_t(role.covers), role.coverage_cutoff, uint32_t(image.srgb))
+        .values(image.width, image.height, uint32_t(page.encoding), uint32_t(page.tiled), role.channels,
+                uint32_t(role.normal), uint32_t(role.covers), role.coverage_cutoff, uint32_t(image.srgb))
         .array(image.texels)
         .array(image.deep)
         .finish();
@@ -170,7 +172,8 @@ bool fetch(const ImageWork& work, const Cache& cache)
 void keep(const ImageWork& work, const Cache& cache)
 {
     std::vector<std::span<const std::byte>> rows;
-    forEachRow(work.bands, [&](uint8_t* row, size_t row_bytes) { rows.push_back(std::as_bytes(std::span(row, row_bytes))); });
+    forEachRow(work.bands,
+               [&](uint8_t* row, size_t row_bytes) { rows.push_back(std::as_bytes(std::span(row, row_bytes))); });
     cache.store(work.key, rows);
 }
 
@@ -219,7 +222,8 @@ void writeImages(std::vector<TextureImage>& images, std::span<const TextureRole>
         images[i].texels = {}, images[i].deep = {};
 }
 
-gpu::TextureRef reference(const TextureUse& use, const TextureImage& image, const TexturePlace& place, const TexturePage& page)
+gpu::TextureRef reference(const TextureUse& use, const TextureImage& image, const TexturePlace& place,
+                          const TexturePage& page)
 {
     return {.page = place.page,
             .layer = place.layer,
@@ -233,7 +237,8 @@ gpu::TextureRef reference(const TextureUse& use, const TextureImage& image, cons
 } // namespace
 
 TexturePages buildTexturePages(std::vector<TextureImage>& images, const std::vector<TextureUse>& uses,
-                               std::span<const gpu::Material> materials, TextureCompression compression, const Cache& cache)
+                               std::span<const gpu::Material> materials, TextureCompression compression,
+                               const Cache& cache)
 {
     const std::vector<TextureRole> roles = textureRoles(materials, uses, images.size());
     TexturePlan plan = planTextures(images, roles, compression);
@@ -246,6 +251,7 @@ TexturePages buildTexturePages(std::vector<TextureImage>& images, const std::vec
     }
     TexturePages out{std::move(plan.pages), {}, plan.halved};
     for (const TextureUse& use : uses)
-        out.refs.push_back(reference(use, images[use.image], plan.places[use.image], out.pages[plan.places[use.image].page]));
+        out.refs.push_back(
+            reference(use, images[use.image], plan.places[use.image], out.pages[plan.places[use.image].page]));
     return out;
 }

@@ -59,11 +59,14 @@ std::vector<size_t> findEqual(const std::vector<TextureImage>& images, std::span
         const std::string_view bytes(reinterpret_cast<const char*>(image.texels.data()), image.texels.size());
         const size_t hash = std::hash<std::string_view>()(bytes);
         const auto [begin, end] = by_hash.equal_range(hash);
-        const auto found = std::find_if(begin, end, [&](const auto& entry) {
-            const TextureImage& other = images[entry.second];
-            return image.width == other.width && image.height == other.height && image.srgb == other.srgb &&
-                   roles[i] == roles[entry.second] && image.texels == other.texels && image.deep == other.deep;
-        });
+        const auto found = std::find_if(begin, end,
+                                        [&](const auto& entry)
+                                        {
+                                            const TextureImage& other = images[entry.second];
+                                            return image.width == other.width && image.height == other.height &&
+                                                   image.srgb == other.srgb && roles[i] == roles[entry.second] &&
+                                                   image.texels == other.texels && image.deep == other.deep;
+                                        });
         same_as[i] = found == end ? i : found->second;
         if (found == end)
             by_hash.emplace(hash, i);
@@ -71,7 +74,10 @@ std::vector<size_t> findEqual(const std::vector<TextureImage>& images, std::span
     return same_as;
 }
 
-TileSize sizeOf(const PageKey& key) { return {key.width, key.height}; }
+TileSize sizeOf(const PageKey& key)
+{
+    return {key.width, key.height};
+}
 
 /// The order in which images get a page of their own: first those that no tile can hold, then by memory.
 std::vector<const Group*> byWorth(const Groups& groups)
@@ -79,9 +85,8 @@ std::vector<const Group*> byWorth(const Groups& groups)
     std::vector<const Group*> order;
     for (const Group& group : groups)
         order.push_back(&group);
-    const auto worth = [](const Group* g) {
-        return std::pair(!isTileable(sizeOf(g->first)), uint64_t(g->first.width) * g->first.height * g->second.size());
-    };
+    const auto worth = [](const Group* g)
+    { return std::pair(!isTileable(sizeOf(g->first)), uint64_t(g->first.width) * g->first.height * g->second.size()); };
     std::stable_sort(order.begin(), order.end(), [&](const Group* a, const Group* b) { return worth(a) > worth(b); });
     return order;
 }
@@ -125,8 +130,13 @@ void addPlainPage(const Group& group, TexturePlan& plan)
     const PageKey& key = group.first;
     for (size_t layer = 0; layer < group.second.size(); ++layer)
         plan.places[group.second[layer]] = {uint32_t(plan.pages.size()), uint32_t(layer)};
-    plan.pages.push_back({key.encoding, false, key.width, key.height, uint32_t(group.second.size()),
-                          levelCount(key.width, key.height), {}});
+    plan.pages.push_back({key.encoding,
+                          false,
+                          key.width,
+                          key.height,
+                          uint32_t(group.second.size()),
+                          levelCount(key.width, key.height),
+                          {}});
 }
 
 void addTiledPage(TextureEncoding encoding, const std::vector<const Group*>& groups, TexturePlan& plan)

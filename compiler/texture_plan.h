@@ -25,4 +25,7 @@ struct TexturePlan
 TexturePlan planTextures(std::vector<TextureImage>& images, std::span<const TextureRole> roles,
                          TextureCompression compression);
 
-inline uint32_t levelCount(uint32_t width, uint32_t height) { return uint32_t(std::bit_width(std::max(width, height))); }
+inline uint32_t levelCount(uint32_t width, uint32_t height)
+{
+    return uint32_t(std::bit_width(std::max(width, height)));
+}

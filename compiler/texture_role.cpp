@@ -9,7 +9,9 @@ namespace
 class Roles
 {
 public:
-    Roles(std::span<const TextureUse> uses, size_t image_count) : uses_(uses), roles_(image_count), read_(uses.size()) {}
+    Roles(std::span<const TextureUse> uses, size_t image_count) : uses_(uses), roles_(image_count), read_(uses.size())
+    {
+    }
 
     void read(uint32_t use, uint32_t channels, bool normal = false, bool covers = false)
     {

@@ -10,10 +10,10 @@ inline constexpr uint32_t kAllChannels = gpu::kRed | gpu::kGreen | gpu::kBlue | 
 
 struct TextureRole
 {
-    uint32_t channels = 0;       // gpu::kRed .. that any material reads
-    bool normal = false;         // unit vectors and nothing else
-    bool covers = false;         // alpha is the coverage of the colour, for every material that reads it
-    float coverage_cutoff = 0;   // what passes the alpha test; 0: no material tests it
+    uint32_t channels = 0;     // gpu::kRed .. that any material reads
+    bool normal = false;       // unit vectors and nothing else
+    bool covers = false;       // alpha is the coverage of the colour, for every material that reads it
+    float coverage_cutoff = 0; // what passes the alpha test; 0: no material tests it
     auto operator<=>(const TextureRole&) const = default;
 };
 

@@ -63,8 +63,9 @@ std::vector<std::string> sentences(const Warnings& warnings)
 {
     constexpr size_t kMostAlone = 3;
     using Group = std::tuple<WarningKind, std::string, std::string>; // kind, stand-in, message if it has no pointer
-    const auto groupOf = [](const Warning& w)
-    { return Group{w.kind, w.stand_in, w.pointer.empty() ? w.message : std::string()}; };
+    const auto groupOf = [](const Warning& w) {
+        return Group{w.kind, w.stand_in, w.pointer.empty() ? w.message : std::string()};
+    };
     std::map<Group, size_t> counts;
     for (const Warning& warning : warnings)
         ++counts[groupOf(warning)];

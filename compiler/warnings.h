@@ -29,8 +29,8 @@ struct Warning
 {
     std::string message; // what is wrong: a sentence without full stop, without its place
     WarningKind kind = WarningKind::kNote;
-    std::string pointer = {};  // JSON pointer into the glTF file; empty where it is about no single item
-    std::string stand_in = {}; // what takes the item's place; empty where `message` says it
+    std::string pointer = {};           // JSON pointer into the glTF file; empty where it is about no single item
+    std::string stand_in = {};          // what takes the item's place; empty where `message` says it
     ExitCode code = ExitCode::kInvalid; // of the error that this would be
 
     Warning(std::string text) : message(std::move(text)) {}

@@ -33,7 +33,7 @@ std::array<uint8_t, 16> decodeChannel(std::span<const std::byte, 8> block)
 struct Bc7Mode
 {
     uint32_t subsets, partition_bits, rotation_bits, selection_bits;
-    uint32_t color_bits, alpha_bits;        // of an endpoint
+    uint32_t color_bits, alpha_bits;         // of an endpoint
     uint32_t endpoint_p_bits, shared_p_bits; // 1: an extra lowest bit an endpoint, or a subset
     uint32_t index_bits, second_index_bits;
 };

@@ -10,8 +10,14 @@ namespace blocks
 {
 inline constexpr uint32_t kSide = 4; // texels
 
-inline constexpr uint32_t acrossSide(uint32_t texels) { return (texels + kSide - 1) / kSide; }
-inline constexpr uint64_t countIn(uint32_t width, uint32_t height) { return uint64_t(acrossSide(width)) * acrossSide(height); }
+inline constexpr uint32_t acrossSide(uint32_t texels)
+{
+    return (texels + kSide - 1) / kSide;
+}
+inline constexpr uint64_t countIn(uint32_t width, uint32_t height)
+{
+    return uint64_t(acrossSide(width)) * acrossSide(height);
+}
 
 using Texels = std::array<std::array<uint8_t, 4>, 16>; // RGBA8, row by row
 

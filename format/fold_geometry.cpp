@@ -26,14 +26,16 @@ public:
             open_.pop_back();
             if ((child.reference & gpu::kLeafBit) != 0)
             {
-                check((child.reference & gpu::kLeafFirstMask) == next_leaf_, "leaf {:x} where {} is next", child.reference, next_leaf_);
+                check((child.reference & gpu::kLeafFirstMask) == next_leaf_, "leaf {:x} where {} is next",
+                      child.reference, next_leaf_);
                 next_leaf_ += (child.reference >> gpu::kLeafCountShift & gpu::kLeafCountMask) + 1;
             }
             else
                 visit(child.reference, child.box);
         }
-        check(next_node_ == stored_.size() && next_leaf_ == geometry_.leaf_triangles.size(), "{} of {} nodes, {} of {} leaf triangles",
-              next_node_, stored_.size(), next_leaf_, geometry_.leaf_triangles.size());
+        check(next_node_ == stored_.size() && next_leaf_ == geometry_.leaf_triangles.size(),
+              "{} of {} nodes, {} of {} leaf triangles", next_node_, stored_.size(), next_leaf_,
+              geometry_.leaf_triangles.size());
         return std::move(stored_);
     }
 
@@ -53,9 +55,10 @@ private:
         for (size_t c = gpu::kBvhWidth; c-- > 0;)
         {
             const uint32_t reference = planes.child[c];
-            out.child[c] = reference == gpu::kNone                ? kNoChild
-                           : (reference & gpu::kLeafBit) == 0 ? kInnerChild
-                                                              : uint8_t((reference >> gpu::kLeafCountShift & gpu::kLeafCountMask) + 1);
+            out.child[c] = reference == gpu::kNone ? kNoChild
+                           : (reference & gpu::kLeafBit) == 0
+                               ? kInnerChild
+                               : uint8_t((reference >> gpu::kLeafCountShift & gpu::kLeafCountMask) + 1);
             Child child{reference, {}};
             for (size_t axis = 0; axis < 3; ++axis)
             {
@@ -63,8 +66,8 @@ private:
                 out.low[axis][c] = out.high[axis][c] = 0;
                 if (reference == gpu::kNone)
                     continue;
-                check(low >= box.low[axis] && high <= box.high[axis], "node {} child {} from {} to {} in {} to {}", index, c, low, high,
-                      box.low[axis], box.high[axis]);
+                check(low >= box.low[axis] && high <= box.high[axis], "node {} child {} from {} to {} in {} to {}",
+                      index, c, low, high, box.low[axis], box.high[axis]);
                 const BoxSteps steps(box.low[axis], box.high[axis]);
                 out.low[axis][c] = steps.toLow(low);
                 out.high[axis][c] = steps.toHigh(high);
@@ -119,8 +122,11 @@ StoredGeometry foldGeometry(const Geometry& geometry)
 std::vector<ChunkSource> StoredGeometry::chunks() const
 {
     const auto bytes = [](const auto& array) { return std::as_bytes(std::span(array)); };
-    return {{kBvhNodesChunk, 0, bytes(nodes)},         {kLeafTrianglesChunk, 0, bytes(leaf_triangles)},
-            {kTrianglesChunk, 0, bytes(triangles)},    {kPositionsChunk, 0, bytes(positions)},
-            {kVertexAttributesChunk, 0, bytes(vertices)}, {kVertexExtrasChunk, 0, bytes(extras)}};
+    return {{kBvhNodesChunk, 0, bytes(nodes)},
+            {kLeafTrianglesChunk, 0, bytes(leaf_triangles)},
+            {kTrianglesChunk, 0, bytes(triangles)},
+            {kPositionsChunk, 0, bytes(positions)},
+            {kVertexAttributesChunk, 0, bytes(vertices)},
+            {kVertexExtrasChunk, 0, bytes(extras)}};
 }
 } // namespace package

@@ -20,7 +20,7 @@ GPU_CONST uint kTraversalStackSize = 64u; // entries; the compiler builds no dee
 // parent's: the tree is acyclic), or a leaf: kLeafBit | (triangle_count - 1) << kLeafCountShift | first BvhTriangle.
 GPU_CONST uint kLeafBit = 0x80000000u;
 GPU_CONST uint kLeafCountShift = 28u;
-GPU_CONST uint kLeafCountMask = 0x7u;         // 1..8 triangles a leaf
+GPU_CONST uint kLeafCountMask = 0x7u; // 1..8 triangles a leaf
 GPU_CONST uint kLeafFirstMask = 0x0fffffffu;
 
 struct BvhNode // four children, bounds as structure of arrays: component i belongs to child[i]
@@ -40,12 +40,12 @@ GPU_CONST uint kTriangleThin = 2u;  // thin-walled smooth transmission: shadow r
 
 struct BvhTriangle // in leaf order; spatial splits may store one triangle several times, but only once one with flags
 {
-    vec3 v0; // metres, world space, counter-clockwise seen from the front
+    vec3 v0;       // metres, world space, counter-clockwise seen from the front
     uint triangle; // index into Triangles
     vec3 v1;
     uint material; // index into Materials
     vec3 v2;
-    uint flags;    // kTriangle*
+    uint flags; // kTriangle*
 };
 GPU_SIZE(BvhTriangle, 48);
 GPU_OFFSET(BvhTriangle, v1, 16);
@@ -78,8 +78,9 @@ GPU_OFFSET(VertexAttributes, color, 24);
 GPU_CONST uint kMaterialAlphaMask = 1u;   // coverage = alpha >= alpha_cutoff
 GPU_CONST uint kMaterialAlphaBlend = 2u;  // coverage = alpha
 GPU_CONST uint kMaterialDoubleSided = 4u; // emits on both sides; reflection is always two-sided
-GPU_CONST uint kMaterialUnlit = 8u;       // KHR_materials_unlit: shows base_color to the eye, takes no part in light transport
-GPU_CONST uint kMaterialThin = 16u;       // transmission > 0 without a volume: thin-walled, no refraction
+GPU_CONST uint kMaterialUnlit =
+    8u; // KHR_materials_unlit: shows base_color to the eye, takes no part in light transport
+GPU_CONST uint kMaterialThin = 16u; // transmission > 0 without a volume: thin-walled, no refraction
 
 GPU_CONST uint kEncodingLinear = 0u; // of textures that materials name
 GPU_CONST uint kEncodingSrgb = 1u;
@@ -111,7 +112,8 @@ MATERIAL_FIELDS(NUMBER, FLAGS, TEXTURE)
 
 GPU_CONST float kSmoothRoughness = 0.03; // below it a specular lobe is a perfect mirror or a perfect refraction
 
-GPU_CONST uint kTexturePageCount = 16u; // array textures a scene may use: one per size and encoding, or many sizes in tiles
+GPU_CONST uint kTexturePageCount =
+    16u; // array textures a scene may use: one per size and encoding, or many sizes in tiles
 
 // TextureRef.sampling: bits 0-1 wrap u, bits 2-3 wrap v, bit 4 nearest, bit 5 use TEXCOORD_1, bit 6 tile, bit 7 x and y only
 GPU_CONST uint kWrapRepeat = 0u;
@@ -119,17 +121,17 @@ GPU_CONST uint kWrapClamp = 1u;
 GPU_CONST uint kWrapMirror = 2u;
 GPU_CONST uint kSampleNearest = 16u;
 GPU_CONST uint kSampleUv1 = 32u;
-GPU_CONST uint kSampleTile = 64u;     // a tile of a tiled page (texture_tile.h), else a whole layer
+GPU_CONST uint kSampleTile = 64u;      // a tile of a tiled page (texture_tile.h), else a whole layer
 GPU_CONST uint kSampleNormalXy = 128u; // a unit vector of which only x and y are stored; z >= 0
 
 struct TextureRef // one use of a texture: which layer of which page, and how
 {
-    uint page;     // < kTexturePageCount
+    uint page; // < kTexturePageCount
     uint layer;
     uint sampling;
-    uint origin;   // of the tile, texels: x in bits 0..15, y in bits 16..31; multiples of 4; 0 for a whole layer
-    uint size;     // of level 0, texels: width in bits 0..15, height in bits 16..31
-    vec3 u_row;    // u' = dot(u_row, vec3(u, v, 1)): KHR_texture_transform
+    uint origin; // of the tile, texels: x in bits 0..15, y in bits 16..31; multiples of 4; 0 for a whole layer
+    uint size;   // of level 0, texels: width in bits 0..15, height in bits 16..31
+    vec3 u_row;  // u' = dot(u_row, vec3(u, v, 1)): KHR_texture_transform
     vec3 v_row;
 };
 GPU_SIZE(TextureRef, 44);
@@ -151,7 +153,8 @@ struct Light
     uint triangle; // triangle: index into Triangles, else kNone
     vec3 p2;       // spot: (cone_scale, cone_offset, 0), see below. triangle: vertex 2
     float pmf;     // probability of being picked by the alias table; about its share of the power
-    vec3 emission; // point, spot: W/sr. directional: W/m^2. triangle: W/(m^2 sr) before texture and alpha. environment: factor
+    vec3
+        emission; // point, spot: W/sr. directional: W/m^2. triangle: W/(m^2 sr) before texture and alpha. environment: factor
     uint material; // triangle whose emission varies, by an emissive texture or alpha: its material, else kNone
 };
 GPU_SIZE(Light, 64);
@@ -172,7 +175,7 @@ GPU_SIZE(AliasEntry, 8);
 // row 0 at +Y; rotation is META's, about +Y as a node's would be. Radiance is bilinearly filtered (u repeats, v clamps). Importance is a coarser grid over the same (u,v):
 struct EnvironmentTexel
 {
-    float threshold;   // alias table over the texels, row-major
+    float threshold; // alias table over the texels, row-major
     uint alias;
     float probability; // of this texel; never 0 where filtered radiance is not
 };
@@ -186,18 +189,18 @@ struct CausticTarget // bounding sphere of one specular object: where caustic ph
 GPU_SIZE(CausticTarget, 16);
 
 // What a scene has, so that kernels can be built without what it has not (specialization constant 0)
-GPU_CONST uint kFeatureAlpha = 1u;            // triangles with kTriangleAlpha
-GPU_CONST uint kFeatureThin = 2u;             // triangles with kTriangleThin
-GPU_CONST uint kFeatureTransmission = 4u;     // materials that transmit
+GPU_CONST uint kFeatureAlpha = 1u;        // triangles with kTriangleAlpha
+GPU_CONST uint kFeatureThin = 2u;         // triangles with kTriangleThin
+GPU_CONST uint kFeatureTransmission = 4u; // materials that transmit
 GPU_CONST uint kFeaturePunctualLights = 8u;
 GPU_CONST uint kFeatureTriangleLights = 16u;
 GPU_CONST uint kFeatureEnvironment = 32u;
 GPU_CONST uint kFeatureNormalMaps = 64u;
 GPU_CONST uint kFeatureMetallicRoughnessMaps = 128u;
 GPU_CONST uint kFeatureEmissiveMaps = 256u;
-GPU_CONST uint kFeatureRareMaps = 512u;       // all others
-GPU_CONST uint kFeatureMetal = 1024u;         // materials with metallic > 0
-GPU_CONST uint kFeatureSpecular = 2048u;      // materials with any specular reflection or transmission
+GPU_CONST uint kFeatureRareMaps = 512u;  // all others
+GPU_CONST uint kFeatureMetal = 1024u;    // materials with metallic > 0
+GPU_CONST uint kFeatureSpecular = 2048u; // materials with any specular reflection or transmission
 GPU_CONST uint kFeatureBaseColorMaps = 4096u;
 GPU_CONST uint kFeatureSecondUv = 8192u;      // textures that use TEXCOORD_1
 GPU_CONST uint kFeatureVertexColors = 16384u; // vertices that are not white
@@ -214,7 +217,7 @@ struct SceneInfo // uniform block: what every kernel may need to know of the sce
     vec3 bounds_min; // metres
     uint light_count;
     vec3 bounds_max;
-    uint environment_light; // index into Lights or kNone
+    uint environment_light;            // index into Lights or kNone
     uvec2 environment_importance_size; // texels; 0 without environment
     uint caustic_target_count;
     uint triangle_count;

@@ -7,17 +7,38 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace gpu {
+namespace gpu
+{
 using uint = std::uint32_t;
-struct vec2 { float x, y; };
-struct vec3 { float x, y, z; };
-struct vec4 { float x, y, z, w; };
-struct uvec2 { uint x, y; };
-struct uvec3 { uint x, y, z; };
-struct uvec4 { uint x, y, z, w; };
+struct vec2
+{
+    float x, y;
+};
+struct vec3
+{
+    float x, y, z;
+};
+struct vec4
+{
+    float x, y, z, w;
+};
+struct uvec2
+{
+    uint x, y;
+};
+struct uvec3
+{
+    uint x, y, z;
+};
+struct uvec4
+{
+    uint x, y, z, w;
+};
 } // namespace gpu
 
-#define GPU_NAMESPACE_BEGIN namespace gpu {
+#define GPU_NAMESPACE_BEGIN \
+    namespace gpu \
+    {
 #define GPU_NAMESPACE_END }
 #define GPU_CONST inline constexpr
 #define GPU_FUNCTION inline

@@ -28,7 +28,7 @@ inline constexpr auto kMaterialTextures = []
 #define FLAGS(word, name, meaning)
 #define TEXTURE(word, name, encoding, channels, feature, meaning) \
     MaterialTexture{#name, &gpu::Material::name, encoding, channels, feature},
-    MATERIAL_FIELDS(NUMBER, FLAGS, TEXTURE)
+        MATERIAL_FIELDS(NUMBER, FLAGS, TEXTURE)
 #undef NUMBER
 #undef FLAGS
 #undef TEXTURE

@@ -91,10 +91,10 @@ Result<std::vector<ChunkEntry>> readTable(std::span<const std::byte> file, const
 
 bool isKnown(uint32_t id)
 {
-    constexpr std::array kKnown{kMetaChunk,         kBvhNodesChunk,         kLeafTrianglesChunk, kTrianglesChunk,
-                                kPositionsChunk,    kVertexAttributesChunk, kVertexExtrasChunk,  kMaterialsChunk,
-                                kTextureRefsChunk,  kTexturePageChunk,      kLightsChunk,        kLightAliasesChunk,
-                                kEnvironmentChunk,  kEnvironmentTexelsChunk, kCausticTargetsChunk};
+    constexpr std::array kKnown{kMetaChunk,        kBvhNodesChunk,          kLeafTrianglesChunk, kTrianglesChunk,
+                                kPositionsChunk,   kVertexAttributesChunk,  kVertexExtrasChunk,  kMaterialsChunk,
+                                kTextureRefsChunk, kTexturePageChunk,       kLightsChunk,        kLightAliasesChunk,
+                                kEnvironmentChunk, kEnvironmentTexelsChunk, kCausticTargetsChunk};
     return std::find(kKnown.begin(), kKnown.end(), id) != kKnown.end();
 }
 
@@ -214,7 +214,8 @@ Status loadChunks(std::span<const std::byte> file, Unpack unpack, Container& con
                                    "again",
                                    chunkName(entry.id), entry.index);
                 container.chunks[i] = stored;
-                if (entry.codec == Codec::kNone || !isKnown(entry.id) || (unpack == Unpack::kMeta && entry.id != kMetaChunk))
+                if (entry.codec == Codec::kNone || !isKnown(entry.id) ||
+                    (unpack == Unpack::kMeta && entry.id != kMetaChunk))
                     return Success{};
                 Status status = decompress(entry, stored, container.storage[i]);
                 container.chunks[i] = {container.storage[i].get(), entry.raw_bytes};

@@ -75,7 +75,8 @@ Status verifyPageSize(const lumicut::fb::TexturePage& page, uint32_t index)
         return invalid("chunk META: texture page {} has {} mip levels, allowed are 1 to {}", index, page.levels(),
                        full_chain);
     if (page.tiled() && page.levels() != 1)
-        return invalid("chunk META: texture page {} is tiled and has {} mip levels, allowed is 1", index, page.levels());
+        return invalid("chunk META: texture page {} is tiled and has {} mip levels, allowed is 1", index,
+                       page.levels());
     return Success{};
 }
 
@@ -150,7 +151,8 @@ Status verifyContents(const Contents& contents, UnfoldedGeometry& geometry, bool
     if (Status meta = verifyMeta(contents); !meta) // everything refers to its bounds
         return meta;
     std::vector<std::function<Status()>> tasks;
-    const auto add = [&](Status (*verify)(const Contents&)) { tasks.emplace_back([&contents, verify] { return verify(contents); }); };
+    const auto add = [&](Status (*verify)(const Contents&))
+    { tasks.emplace_back([&contents, verify] { return verify(contents); }); };
     geometry.addFirst(contents, tasks);
     for (const auto verify : {verifyMaterials, verifyTextureRefs, verifyEnvironment, verifyCausticTargets})
         add(verify);

@@ -45,5 +45,7 @@ private:
     std::variant<T, Error> state_;
 };
 
-struct Success {};
+struct Success
+{
+};
 using Status = Result<Success>; // for operations that only succeed or fail

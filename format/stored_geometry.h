@@ -17,7 +17,8 @@ inline constexpr uint8_t kInnerChild = 255;
 /// triangles from chunk LEAF in the same order.
 struct StoredNode
 {
-    std::array<std::array<uint16_t, gpu::kBvhWidth>, 3> low;  // [axis][child], steps up from the low side of this node's box
+    std::array<std::array<uint16_t, gpu::kBvhWidth>, 3>
+        low; // [axis][child], steps up from the low side of this node's box
     std::array<std::array<uint16_t, gpu::kBvhWidth>, 3> high; // steps down from its high side
     std::array<uint8_t, gpu::kBvhWidth> child;
 };

@@ -17,7 +17,12 @@ namespace
 /// one atomic step.
 struct OpenFile
 {
-    enum State : int { kFree, kTaken, kOpen };
+    enum State : int
+    {
+        kFree,
+        kTaken,
+        kOpen
+    };
     std::atomic<int> state{kFree};
     std::array<char, PATH_MAX> path{};
 };

@@ -17,10 +17,16 @@ GPU_FUNCTION uint levelSide(uint side, uint level)
 }
 
 /// The same with borders, up to whole blocks.
-GPU_FUNCTION uint tileSide(uint side) { return (side + 2u * kTileBorder + 3u) & ~3u; }
+GPU_FUNCTION uint tileSide(uint side)
+{
+    return (side + 2u * kTileBorder + 3u) & ~3u;
+}
 
 /// Level 0 lies at the tile's origin, the smaller ones to the right of it, one below the other.
-GPU_FUNCTION uint tileLevelX(uint origin, uint width, uint level) { return level == 0u ? origin : origin + tileSide(width); }
+GPU_FUNCTION uint tileLevelX(uint origin, uint width, uint level)
+{
+    return level == 0u ? origin : origin + tileSide(width);
+}
 GPU_FUNCTION uint tileLevelY(uint origin, uint height, uint level)
 {
     uint y = origin;

@@ -43,9 +43,11 @@ public:
         if (next_node_ < stored_.nodes.size())
             return invalid("chunk NODE: node {} has no parent", next_node_);
         if (next_leaf_ < stored_.leaf_triangles.size())
-            return invalid("chunk LEAF: {} triangles, the leaves in chunk NODE hold {}", stored_.leaf_triangles.size(), next_leaf_);
+            return invalid("chunk LEAF: {} triangles, the leaves in chunk NODE hold {}", stored_.leaf_triangles.size(),
+                           next_leaf_);
         if (const uint32_t need = traversalStackNeed(); need > gpu::kTraversalStackSize)
-            return invalid("chunk NODE: traversal may need {} stack entries, shaders have {}", need, gpu::kTraversalStackSize);
+            return invalid("chunk NODE: traversal may need {} stack entries, shaders have {}", need,
+                           gpu::kTraversalStackSize);
         return Success{};
     }
 
@@ -62,10 +64,12 @@ private:
     Status takeLeaf(const Child& child)
     {
         if (child.kind > kMostLeafTriangles)
-            return invalid("chunk NODE: node {} child {} is of the unknown kind {}", child.parent, child.number, child.kind);
+            return invalid("chunk NODE: node {} child {} is of the unknown kind {}", child.parent, child.number,
+                           child.kind);
         if (next_leaf_ + child.kind > std::min<size_t>(stored_.leaf_triangles.size(), size_t(gpu::kLeafFirstMask) + 1))
-            return invalid("chunk NODE: node {} child {} is a leaf over triangles {} to {}, chunk LEAF has {}", child.parent,
-                           child.number, next_leaf_, next_leaf_ + child.kind - 1, stored_.leaf_triangles.size());
+            return invalid("chunk NODE: node {} child {} is a leaf over triangles {} to {}, chunk LEAF has {}",
+                           child.parent, child.number, next_leaf_, next_leaf_ + child.kind - 1,
+                           stored_.leaf_triangles.size());
         refer(child, gpu::kLeafBit | uint32_t(child.kind - 1) << gpu::kLeafCountShift | uint32_t(next_leaf_));
         next_leaf_ += child.kind;
         return Success{};
@@ -75,8 +79,8 @@ private:
     {
         const uint32_t index = next_node_;
         if (index >= stored_.nodes.size())
-            return invalid("chunk NODE: node {} child {} is node {}, but there are only {}", child.parent, child.number, index,
-                           stored_.nodes.size());
+            return invalid("chunk NODE: node {} child {} is node {}, but there are only {}", child.parent, child.number,
+                           index, stored_.nodes.size());
         if (index > 0)
             refer(child, index);
         ++next_node_;
@@ -90,7 +94,8 @@ private:
             {
                 const bool present = node.child[c] != kNoChild;
                 planes.at[2 * axis][c] = present ? steps.low(node.low[axis][c]) : std::numeric_limits<float>::max();
-                planes.at[2 * axis + 1][c] = present ? steps.high(node.high[axis][c]) : std::numeric_limits<float>::lowest();
+                planes.at[2 * axis + 1][c] =
+                    present ? steps.high(node.high[axis][c]) : std::numeric_limits<float>::lowest();
             }
         }
         nodes_[index] = std::bit_cast<gpu::BvhNode>(planes);
@@ -102,7 +107,8 @@ private:
                 {
                     const float low = planes.at[2 * axis][c], high = planes.at[2 * axis + 1][c];
                     if (!isFinite({low, high}) || low > high)
-                        return invalid("chunk NODE: node {} child {} has bounds that are not finite or upside down", index, c);
+                        return invalid("chunk NODE: node {} child {} has bounds that are not finite or upside down",
+                                       index, c);
                     open_.back().box.low[axis] = low;
                     open_.back().box.high[axis] = high;
                 }
@@ -118,7 +124,8 @@ private:
         for (size_t i = next_node_; i-- > 0;)
         {
             uint32_t present = 0, deepest = 0;
-            for (const uint32_t reference : {nodes_[i].child.x, nodes_[i].child.y, nodes_[i].child.z, nodes_[i].child.w})
+            for (const uint32_t reference :
+                 {nodes_[i].child.x, nodes_[i].child.y, nodes_[i].child.z, nodes_[i].child.w})
             {
                 if (reference == gpu::kNone)
                     continue;
@@ -142,7 +149,8 @@ Status verifyLeaves(const StoredArrays& stored, size_t first, size_t end)
 {
     for (size_t i = first; i < end; ++i)
         if (stored.leaf_triangles[i] >= stored.triangles.size())
-            return invalid("chunk LEAF: entry {} is triangle {}, chunk TRIS has {}", i, stored.leaf_triangles[i], stored.triangles.size());
+            return invalid("chunk LEAF: entry {} is triangle {}, chunk TRIS has {}", i, stored.leaf_triangles[i],
+                           stored.triangles.size());
     return Success{};
 }
 
@@ -174,9 +182,11 @@ Status unfoldTriangles(const Contents& contents, gpu::Triangle* out, size_t firs
                                contents.stored.vertices.size());
         const uint32_t index = t.material & kTriangleMaterialMask, flags = t.material >> kTriangleFlagsShift;
         if (index >= contents.materials.size())
-            return invalid("chunk TRIS: triangle {} refers to material {}, chunk MATL has {}", i, index, contents.materials.size());
+            return invalid("chunk TRIS: triangle {} refers to material {}, chunk MATL has {}", i, index,
+                           contents.materials.size());
         const uint32_t material_flags = contents.materials[index].flags;
-        if ((flags & gpu::kTriangleAlpha) != 0 && (material_flags & (gpu::kMaterialAlphaMask | gpu::kMaterialAlphaBlend)) == 0)
+        if ((flags & gpu::kTriangleAlpha) != 0 &&
+            (material_flags & (gpu::kMaterialAlphaMask | gpu::kMaterialAlphaBlend)) == 0)
             return invalid("chunk TRIS: triangle {} is flagged for alpha but its material {} is opaque", i, index);
         if ((flags & gpu::kTriangleThin) != 0 && (material_flags & gpu::kMaterialThin) == 0)
             return invalid("chunk TRIS: triangle {} is flagged as thin but its material {} is not", i, index);
@@ -190,7 +200,8 @@ Status verifyFlags(const Contents& contents)
     uint32_t all = 0;
     for (const StoredTriangle& t : contents.stored.triangles)
         all |= t.material >> kTriangleFlagsShift;
-    if (contents.meta->has_alpha() != ((all & gpu::kTriangleAlpha) != 0) || contents.meta->has_thin() != ((all & gpu::kTriangleThin) != 0))
+    if (contents.meta->has_alpha() != ((all & gpu::kTriangleAlpha) != 0) ||
+        contents.meta->has_thin() != ((all & gpu::kTriangleThin) != 0))
         return invalid("chunk META: has_alpha or has_thin disagree with the flags in chunk TRIS");
     return Success{};
 }
@@ -241,10 +252,12 @@ Status assignLights(const Contents& contents, gpu::Triangle* triangles)
         if (light.kind != gpu::kLightTriangle && light.kind != gpu::kLightTriangleTwoSided)
             continue;
         if (light.triangle >= contents.triangles.size())
-            return invalid("chunk LITE: light {} refers to triangle {}, chunk TRIS has {}", i, light.triangle, contents.triangles.size());
+            return invalid("chunk LITE: light {} refers to triangle {}, chunk TRIS has {}", i, light.triangle,
+                           contents.triangles.size());
         uint32_t& of_triangle = triangles[light.triangle].light;
         if (of_triangle != gpu::kNone)
-            return invalid("chunk LITE: light {} claims triangle {}, which is light {} already", i, light.triangle, of_triangle);
+            return invalid("chunk LITE: light {} claims triangle {}, which is light {} already", i, light.triangle,
+                           of_triangle);
         of_triangle = i;
     }
     return Success{};
@@ -271,11 +284,14 @@ void UnfoldedGeometry::addFirst(const Contents& contents, Tasks& tasks)
 {
     const StoredArrays& stored = contents.stored;
     tasks.emplace_back([&contents, this] { return NodeUnfolder(contents, nodes.get()).run(); });
-    addPieces(tasks, stored.leaf_triangles.size(), [&stored](size_t first, size_t end) { return verifyLeaves(stored, first, end); });
+    addPieces(tasks, stored.leaf_triangles.size(),
+              [&stored](size_t first, size_t end) { return verifyLeaves(stored, first, end); });
     addPieces(tasks, stored.triangles.size(),
-              [&contents, this](size_t first, size_t end) { return unfoldTriangles(contents, triangles.get(), first, end); });
+              [&contents, this](size_t first, size_t end)
+              { return unfoldTriangles(contents, triangles.get(), first, end); });
     tasks.emplace_back([&contents] { return verifyFlags(contents); });
-    addPieces(tasks, stored.positions.size(), [&contents](size_t first, size_t end) { return verifyPositions(contents, first, end); });
+    addPieces(tasks, stored.positions.size(),
+              [&contents](size_t first, size_t end) { return verifyPositions(contents, first, end); });
     addPieces(tasks, stored.vertices.size(),
               [&stored, this](size_t first, size_t end) { return unfoldVertices(stored, vertices.get(), first, end); });
 }

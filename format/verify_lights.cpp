@@ -46,7 +46,8 @@ Status verifyTriangleLight(const Contents& contents, const gpu::Light& light, si
         return invalid("chunk LITE: light {} refers to material {}, chunk MATL has {}", index, light.material,
                        contents.materials.size());
     const gpu::Material& material = contents.materials[light.material];
-    if (material.emissive_texture == gpu::kNone && (material.flags & (gpu::kMaterialAlphaMask | gpu::kMaterialAlphaBlend)) == 0)
+    if (material.emissive_texture == gpu::kNone &&
+        (material.flags & (gpu::kMaterialAlphaMask | gpu::kMaterialAlphaBlend)) == 0)
         return invalid("chunk LITE: light {} names material {}, which has neither an emissive texture nor alpha", index,
                        light.material);
     return Success{};
@@ -116,7 +117,8 @@ Status verifyEnvironment(const Contents& contents)
         return invalid("chunk META: the environment's average radiance is missing, negative or not finite");
     constexpr float kHalfTurn = 3.1415928f; // radians: pi, rounded up
     if (!isWithin(environment->rotation(), -kHalfTurn, kHalfTurn))
-        return invalid("chunk META: the environment is turned by {} radians, allowed is -pi to pi", environment->rotation());
+        return invalid("chunk META: the environment is turned by {} radians, allowed is -pi to pi",
+                       environment->rotation());
     if (contents.environment_map.size() != size_t(environment->width()) * environment->height())
         return invalid("chunk ENVR: {} texels, META says {} x {}", contents.environment_map.size(),
                        environment->width(), environment->height());

@@ -67,8 +67,8 @@ Status verifyMaterials(const Contents& contents)
         for (const MaterialTexture& texture : kMaterialTextures)
         {
             if (const uint32_t ref = m.*texture.index; ref != gpu::kNone && ref >= contents.texture_refs.size())
-                return invalid("chunk MATL: material {} refers to texture {} as its {}, chunk TREF has {}", i, ref, texture.name,
-                               contents.texture_refs.size());
+                return invalid("chunk MATL: material {} refers to texture {} as its {}, chunk TREF has {}", i, ref,
+                               texture.name, contents.texture_refs.size());
         }
     }
     return Success{};

@@ -93,8 +93,8 @@ Status writeExr(const std::filesystem::path& path, uint32_t width, uint32_t heig
         std::vector<std::vector<Imath::half>> halves; // what slices point to
         for (const ExrLayer& layer : layers)
         {
-            check(layer.values.size() == layer.channels.size() * width * height, "layer '{}': {} x {} pixels with {} floats",
-                  layer.name, width, height, layer.values.size());
+            check(layer.values.size() == layer.channels.size() * width * height,
+                  "layer '{}': {} x {} pixels with {} floats", layer.name, width, height, layer.values.size());
             if (layer.half)
                 halves.push_back(toHalf(layer.values));
             const void* values = layer.half ? static_cast<const void*>(halves.back().data()) : layer.values.data();

@@ -11,11 +11,26 @@ float pixelSide(const gpu::CameraParams& camera)
     return 2 * std::hypot(camera.right.x, camera.right.y, camera.right.z) / float(camera.width);
 }
 
-gpu::vec3 operator+(gpu::vec3 a, gpu::vec3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-gpu::vec3 operator*(float s, gpu::vec3 v) { return {s * v.x, s * v.y, s * v.z}; }
-float dot(gpu::vec3 a, gpu::vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-gpu::vec3 cross(gpu::vec3 a, gpu::vec3 b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
-gpu::vec3 normalize(gpu::vec3 v) { return (1 / std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z)) * v; }
+gpu::vec3 operator+(gpu::vec3 a, gpu::vec3 b)
+{
+    return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+gpu::vec3 operator*(float s, gpu::vec3 v)
+{
+    return {s * v.x, s * v.y, s * v.z};
+}
+float dot(gpu::vec3 a, gpu::vec3 b)
+{
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+gpu::vec3 cross(gpu::vec3 a, gpu::vec3 b)
+{
+    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+gpu::vec3 normalize(gpu::vec3 v)
+{
+    return (1 / std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z)) * v;
+}
 
 std::vector<Camera> packageCameras(const package::Package& package)
 {

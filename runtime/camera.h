@@ -9,10 +9,10 @@
 struct Camera
 {
     std::string name;
-    gpu::vec3 position{};        // metres, world
-    gpu::vec3 forward{0, 0, -1}; // unit
-    gpu::vec3 up{0, 1, 0};       // unit, orthogonal to forward
-    float vertical_fov = 0.8f;   // radians; 0: orthographic
+    gpu::vec3 position{};          // metres, world
+    gpu::vec3 forward{0, 0, -1};   // unit
+    gpu::vec3 up{0, 1, 0};         // unit, orthogonal to forward
+    float vertical_fov = 0.8f;     // radians; 0: orthographic
     float orthographic_height = 0; // metres
     float near_plane = 0;          // metres along forward, before which nothing is seen
     float far_plane = 0;           // metres along forward, behind which nothing is seen; 0: there is none

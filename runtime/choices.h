@@ -10,16 +10,22 @@
 #include <cstdint>
 #include <string_view>
 
-#define LUMICUT_SAMPLES_MODES(X)                                                                                       \
-    X(kUniform, 0u, "uniform")      /* seeds follow the number of shading points */                                    \
-    X(kSeeded, 1u, "seeded")        /* seeds follow geometric variation */                                             \
+#define LUMICUT_SAMPLES_MODES(X) \
+    X(kUniform, 0u, "uniform")      /* seeds follow the number of shading points */ \
+    X(kSeeded, 1u, "seeded")        /* seeds follow geometric variation */ \
     X(kKmeans, 2u, "seeded+kmeans") /* the same, then moved by k-means */
-enum class SamplesMode : uint32_t { LUMICUT_SAMPLES_MODES(GPU_CHOICE_ENUMERATOR) };
+enum class SamplesMode : uint32_t
+{
+    LUMICUT_SAMPLES_MODES(GPU_CHOICE_ENUMERATOR)
+};
 
-#define LUMICUT_GLOSSY_MODES(X)                                                                                        \
-    X(kRays, 0u, "rays")    /* of every lobe */                                                                        \
+#define LUMICUT_GLOSSY_MODES(X) \
+    X(kRays, 0u, "rays")    /* of every lobe */ \
     X(kHarmonics, 1u, "sh") /* of rough lobes by spherical harmonics in the first frame of a picture, by rays later */
-enum class GlossyMode : uint32_t { LUMICUT_GLOSSY_MODES(GPU_CHOICE_ENUMERATOR) };
+enum class GlossyMode : uint32_t
+{
+    LUMICUT_GLOSSY_MODES(GPU_CHOICE_ENUMERATOR)
+};
 
 struct Choice
 {
@@ -45,5 +51,5 @@ consteval bool areNumbered(const std::array<Choice, kCount>& choices)
             return false;
     return true;
 }
-static_assert(areNumbered(kCutModes) && areNumbered(kSamplesModes) && areNumbered(kGlossyModes) && areNumbered(kTerms) &&
-              areNumbered(kViews) && areNumbered(kTonemaps) && areNumbered(kOffOn));
+static_assert(areNumbered(kCutModes) && areNumbered(kSamplesModes) && areNumbered(kGlossyModes) &&
+              areNumbered(kTerms) && areNumbered(kViews) && areNumbered(kTonemaps) && areNumbered(kOffOn));

@@ -42,6 +42,7 @@ void FlyCamera::move(const FlyInput& input, float seconds)
         turn(input.yaw, input.pitch);
     if (input.right == 0 && input.up == 0 && input.forward == 0)
         return;
-    const gpu::vec3 direction = input.right * cross(camera_.forward, camera_.up) + input.forward * camera_.forward + input.up * kWorldUp;
+    const gpu::vec3 direction =
+        input.right * cross(camera_.forward, camera_.up) + input.forward * camera_.forward + input.up * kWorldUp;
     camera_.position = camera_.position + speed_ * seconds * (input.fast ? 4.0f : 1.0f) * direction;
 }

@@ -9,7 +9,8 @@
 
 namespace
 {
-constexpr uint32_t kCausticBounces = 2; // photons that a caustic path is given room for: one, and another behind a smooth layer
+constexpr uint32_t kCausticBounces =
+    2; // photons that a caustic path is given room for: one, and another behind a smooth layer
 
 /// Of a wall that 12 rays to the rim may miss, a node's light passes 0.05 % at most.
 constexpr uint32_t kRimProbes = 12;
@@ -61,7 +62,8 @@ Status GlobalIllumination::checkCounts(const VkPhysicalDeviceLimits& limits, uin
                      fmt::format("{} is more than this device's buffers hold, {}; lower one of them", names, most)};
     };
     const uint64_t threads = uint64_t(limits.maxComputeWorkGroupCount[0]) * gpu::kRaysGroupSize;
-    const uint64_t most_rays = std::min(range / sizeof(gpu::Ray), threads), most_starts = range / sizeof(gpu::PhotonStart);
+    const uint64_t most_rays = std::min(range / sizeof(gpu::Ray), threads),
+                   most_starts = range / sizeof(gpu::PhotonStart);
     if (settings.photon_count > most_starts)
         return tooLarge("photons.count", most_starts);
     if (settings.caustic_photons > most_starts)
@@ -73,12 +75,13 @@ Status GlobalIllumination::checkCounts(const VkPhysicalDeviceLimits& limits, uin
 
 GlobalIllumination::GlobalIllumination(const Device& device, const SceneGpu& scene, const Settings& settings,
                                        uint32_t width, uint32_t height)
-    : scene_(scene), width_(width), height_(height),
-      has_specular_(scene.hasFeature(gpu::kFeatureSpecular)), has_caustic_targets_(scene.info().caustic_target_count > 0),
+    : scene_(scene), width_(width), height_(height), has_specular_(scene.hasFeature(gpu::kFeatureSpecular)),
+      has_caustic_targets_(scene.info().caustic_target_count > 0),
       has_mirrors_(has_caustic_targets_ || scene.hasFeature(gpu::kFeatureTransmission | gpu::kFeatureThin)),
       point_count_(width * height * (scene.hasSmoothLayers() ? 2 : 1)), light_(device, point_count_),
-      primary_(device, scene, width * height, scene.hasSmoothLayers()), view_scale_(device, scene), direct_(device, scene, point_count_),
-      photons_(device, scene, PhotonKind::kGlobal, settings.photon_count, photonCapacity(device, settings.photon_capacity)),
+      primary_(device, scene, width * height, scene.hasSmoothLayers()), view_scale_(device, scene),
+      direct_(device, scene, point_count_), photons_(device, scene, PhotonKind::kGlobal, settings.photon_count,
+                                                     photonCapacity(device, settings.photon_capacity)),
       caustic_photons_(device, scene, PhotonKind::kCaustic, settings.caustic_photons,
                        photonCapacity(device, uint64_t(settings.caustic_photons) * kCausticBounces)),
       photon_tree_(device, "photon_tree", photonCapacity(device, settings.photon_capacity)),
@@ -87,7 +90,8 @@ GlobalIllumination::GlobalIllumination(const Device& device, const SceneGpu& sce
       legs_(device), cut_(device, scene, photonCapacity(device, settings.photon_capacity)),
       samples_(device, width, height, settings.sample_count),
       gather_(device, scene, settings.sample_count, settings.gather_rays), interpolate_(device, settings.sample_count),
-      glossy_(device, scene, point_count_), caustics_(device, scene), compose_(device, width * height), views_(device, scene, width * height)
+      glossy_(device, scene, point_count_), caustics_(device, scene), compose_(device, width * height),
+      views_(device, scene, width * height)
 {
     if (GuideStage::helps(scene))
         guide_.emplace(device, scene, settings.photon_count);
@@ -112,14 +116,15 @@ FrameTraits GlobalIllumination::traits() const
             .pixel_rays = gather_.raysPerPixel(width_ * height_)};
 }
 
-const Buffer& GlobalIllumination::record(Recorder& rec, const RayStage& rays, const FrameInfo& frame, const Settings& settings)
+const Buffer& GlobalIllumination::record(Recorder& rec, const RayStage& rays, const FrameInfo& frame,
+                                         const Settings& settings)
 {
     const FramePlan plan = planFrame(settings, traits(), frame);
     gpu::CameraParams placement = frame.camera;
     placement.seed = placement_seed_.value_or(frame.camera.seed);
     light_.clear(rec, plan.lightTerms());
-    const SurfaceBuffers surface =
-        primary_.record(rec, rays, {.camera = placement, .specular_depth = settings.specular_depth, .emission = light_.emission});
+    const SurfaceBuffers surface = primary_.record(
+        rec, rays, {.camera = placement, .specular_depth = settings.specular_depth, .emission = light_.emission});
     view_scale_.record(rec, surface.points, width_ * height_, frame.camera);
     const Context c{.rec = rec,
                     .rays = rays,
@@ -227,12 +232,12 @@ PhotonStage::Output GlobalIllumination::emitPhotons(const Context& c)
 void GlobalIllumination::warmUp(const Context& c)
 {
     guide_->reset(c.rec);
-    gather_.traceFirstHits(c.rec, c.rays, samples_.record(c.rec, c.rays, samplesInput(c)),
-                 gatherInput(c), *guide_);
+    gather_.traceFirstHits(c.rec, c.rays, samples_.record(c.rec, c.rays, samplesInput(c)), gatherInput(c), *guide_);
     for (uint32_t round = 0; round < kWarmUpRounds; ++round)
     {
         PhotonStage::Input in = photonInput(c);
-        in.seed = traceSeed(in.seed, round, gpu::kTermIndirect); // what is learned from the photons that are used is biased
+        in.seed =
+            traceSeed(in.seed, round, gpu::kTermIndirect); // what is learned from the photons that are used is biased
         guide_->learn(c.rec, photons_.record(c.rec, c.rays, in));
     }
 }

@@ -67,7 +67,8 @@ private:
     CutStage::Output recordCut(const Context& c, const PhotonTreeStage::Output& map);
     SamplesStage::Input samplesInput(const Context& c) const;
     GatherStage::Input gatherInput(const Context& c) const;
-    InterpolateStage::Sorted recordGather(const Context& c, const PhotonTreeStage::Output& map, const CutStage::Output& cut);
+    InterpolateStage::Sorted recordGather(const Context& c, const PhotonTreeStage::Output& map,
+                                          const CutStage::Output& cut);
     void recordPixelGather(const Context& c, const PhotonTreeStage::Output& map, const CutStage::Output& cut);
     void recordIndirect(const Context& c, const InterpolateStage::Sorted& samples) const;
     void recordGlossy(const Context& c, const CutStage::Output& cut, const InterpolateStage::Sorted* samples) const;

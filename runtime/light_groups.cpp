@@ -8,7 +8,9 @@ namespace
 {
 LightKind kindOf(const LightProbability& light)
 {
-    return !light.isInfinite() ? LightKind::kLocal : light.isPunctual() ? LightKind::kDirectional : LightKind::kEnvironment;
+    return !light.isInfinite()  ? LightKind::kLocal
+           : light.isPunctual() ? LightKind::kDirectional
+                                : LightKind::kEnvironment;
 }
 } // namespace
 

@@ -26,7 +26,8 @@ int listDevices(bool validation)
         return fail("lumicut-play", instance.error());
     for (const DeviceInfo& device : instance->devices())
     {
-        fmt::print("{}: {} ({}, {}, {} MiB)\n", device.index, device.name, device.kind, device.driver, device.memory_bytes >> 20);
+        fmt::print("{}: {} ({}, {}, {} MiB)\n", device.index, device.name, device.kind, device.driver,
+                   device.memory_bytes >> 20);
         for (const std::string& lack : device.lacks)
             fmt::print("   lacks {}\n", lack);
     }
@@ -36,8 +37,9 @@ int listDevices(bool validation)
 Status parseSize(const std::string& text, PlayerOptions& options)
 {
     int used = 0;
-    if (std::sscanf(text.c_str(), "%ux%u%n", &options.width, &options.height, &used) != 2 || size_t(used) != text.size() ||
-        options.width < 1 || options.height < 1 || options.width > 8192 || options.height > 8192)
+    if (std::sscanf(text.c_str(), "%ux%u%n", &options.width, &options.height, &used) != 2 ||
+        size_t(used) != text.size() || options.width < 1 || options.height < 1 || options.width > 8192 ||
+        options.height > 8192)
         return Error{ExitCode::kUsage, fmt::format("--size {}: WIDTHxHEIGHT is expected, each 1 to 8192", text)};
     return Success{};
 }
@@ -62,7 +64,8 @@ Status parseFrames(const std::string& text, PlayerOptions& options)
     const auto last = first ? number(dash + 1, text.size()) : std::nullopt;
     if (!last || *last > kMost)
         return Error{ExitCode::kUsage,
-                     fmt::format("--frames: '{}' is neither a count, 1 or more, nor a range such as 0-239, up to {}", text, kMost)};
+                     fmt::format("--frames: '{}' is neither a count, 1 or more, nor a range such as 0-239, up to {}",
+                                 text, kMost)};
     if (*last < *first)
         return Error{ExitCode::kUsage, fmt::format("--frames: the last frame of {} comes before the first", text)};
     options.sequence = FrameRange{*first, *last};
@@ -101,16 +104,18 @@ Status checkOptions(const PlayerOptions& options)
     {
         const auto folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
         if (!std::filesystem::is_directory(folder))
-            return Error{ExitCode::kIo, fmt::format("there is no folder {} to write to", folder.string()), path.string()};
+            return Error{ExitCode::kIo, fmt::format("there is no folder {} to write to", folder.string()),
+                         path.string()};
     }
     if (options.frame_count > 0 && options.sample_count > 0)
         return Error{ExitCode::kUsage, "a count of --frames and --spp both say how much to render; give one"};
     const auto settings = makeSettings(options.preset.empty() ? "default" : options.preset, options.assignments);
     if (!settings)
         return settings.error();
-    if (!options.layers.empty() && (!options.headless || options.output.extension() != ".exr" || options.mode != Mode::kGi ||
-                                    settings->view != gpu::kViewNone))
-        return Error{ExitCode::kUsage, "--layers are of pictures of mode gi: --headless --output FILE.exr, and no view"};
+    if (!options.layers.empty() && (!options.headless || options.output.extension() != ".exr" ||
+                                    options.mode != Mode::kGi || settings->view != gpu::kViewNone))
+        return Error{ExitCode::kUsage,
+                     "--layers are of pictures of mode gi: --headless --output FILE.exr, and no view"};
     if (options.mode != Mode::kGi && settings->view != gpu::kViewNone)
         return Error{ExitCode::kUsage, "views show the inside of mode gi; choose --mode gi or leave the view out"};
     if (settings->view == gpu::kViewError && options.against.empty())
@@ -125,9 +130,10 @@ int main(int argc, char** argv)
 {
     CLI::App app{"Plays a .lumi package: a window with a fly camera, or pictures with --headless.", "lumicut-play"};
     app.set_version_flag("--version", "lumicut-play " LUMICUT_VERSION);
-    app.footer("Settings (--set name=value):\n" + describeSettings() +
-               "Exit codes: 0 ok, 1 usage, 2 I/O, 3 invalid package, 4 no suitable device or out of memory, 5 unsupported;\n"
-               "128 + N: signal N ended a sequence, whose frames so far are whole.");
+    app.footer(
+        "Settings (--set name=value):\n" + describeSettings() +
+        "Exit codes: 0 ok, 1 usage, 2 I/O, 3 invalid package, 4 no suitable device or out of memory, 5 unsupported;\n"
+        "128 + N: signal N ended a sequence, whose frames so far are whole.");
     addDocumentation(app);
     PlayerOptions options;
     std::string size = "1280x720", frames, mode = "gi", view;
@@ -135,34 +141,42 @@ int main(int argc, char** argv)
     app.add_option("package", options.package, "the .lumi file");
     app.add_flag("--headless", options.headless, "render without a window");
     app.add_option("--size", size, "picture size in pixels, WIDTHxHEIGHT")->capture_default_str();
-    const CLI::Option* frames_option = app.add_option("--frames", frames, "how many to render (headless default 1; in a window: no end), or A-B along --path");
+    const CLI::Option* frames_option = app.add_option(
+        "--frames", frames, "how many to render (headless default 1; in a window: no end), or A-B along --path");
     app.add_option("--spp", options.sample_count, "samples a pixel to render, of a sequence in each frame")
         ->check(CLI::Range(1u, UINT32_MAX));
     app.add_option("--output", options.output,
                    "picture to write at the end: .exr (linear) or .png; of a sequence as frame-%04d.exr");
-    app.add_option("--layers", options.layers, "what an .exr of mode gi holds, a list with commas; default the picture alone")
+    app.add_option("--layers", options.layers,
+                   "what an .exr of mode gi holds, a list with commas; default the picture alone")
         ->delimiter(',')
         ->allow_extra_args(false) // else it takes the package after it
         ->check(CLI::IsMember(std::vector<std::string>(kLayerNames.begin(), kLayerNames.end())));
-    app.add_option("--path", options.path, "camera path (.json) to follow; in a window until a key or the mouse moves the camera");
+    app.add_option("--path", options.path,
+                   "camera path (.json) to follow; in a window until a key or the mouse moves the camera");
     const CLI::Option* sequence_options[] = {
         app.add_option("--fps", options.fps, "frames a second of the path, of a sequence")
             ->check(CLI::Range(0.001, 1e6))
             ->capture_default_str(),
         app.add_flag("--force", options.force, "render frames of a sequence again that are there"),
-        app.add_flag("--list-missing", options.list_missing, "print the frames of a sequence that are not there, render nothing")};
-    app.add_option("--mode", mode, "gi, direct or reference")->check(CLI::IsMember({"gi", "direct", "reference"}))->capture_default_str();
+        app.add_flag("--list-missing", options.list_missing,
+                     "print the frames of a sequence that are not there, render nothing")};
+    app.add_option("--mode", mode, "gi, direct or reference")
+        ->check(CLI::IsMember({"gi", "direct", "reference"}))
+        ->capture_default_str();
     app.add_option("--camera", options.camera, "camera by name or index; default the first");
     app.add_option("--seed", options.seed, "seed of all random numbers")->capture_default_str();
     app.add_option("--device", options.device, "index, part of a name, or cpu; default the best suitable one");
     app.add_flag("--list-devices", list_devices, "list Vulkan devices and what each one lacks");
     app.add_option("--stats", options.stats, "write times and counts as JSON");
-    app.add_option("--preset", options.preset, "preview, default or high; without it preview on a CPU device, else default");
+    app.add_option("--preset", options.preset,
+                   "preview, default or high; without it preview on a CPU device, else default");
     app.add_option("--view", view, "show a stage of mode gi in place of the picture; the same as --set view=NAME");
     app.add_option("--against", options.against, "rendering (.exr) that --view error compares the picture with");
     app.add_option("--set", options.assignments, "change a setting, name=value; may be repeated")
         ->allow_extra_args(false); // else it takes the package after it
-    app.add_flag("--validate", options.validation, "run with the Vulkan validation layers; a message stops the program");
+    app.add_flag("--validate", options.validation,
+                 "run with the Vulkan validation layers; a message stops the program");
     try
     {
         app.parse(argc, argv);
@@ -183,13 +197,16 @@ int main(int argc, char** argv)
     Status status = parseSize(size, options);
     if (status && frames_option->count() > 0)
         status = parseFrames(frames, options);
-    const auto given = std::ranges::find_if(sequence_options, [](const CLI::Option* option) { return option->count() > 0; });
+    const auto given =
+        std::ranges::find_if(sequence_options, [](const CLI::Option* option) { return option->count() > 0; });
     if (status)
         status = checkSequence(options, given == std::end(sequence_options) ? "" : (*given)->get_name());
     if (status)
         status = checkOptions(options);
     if (!status)
         return fail("lumicut-play", status.error());
-    status = options.sequence ? playSequence(options) : options.headless ? playHeadless(options) : playWindowed(options);
+    status = options.sequence   ? playSequence(options)
+             : options.headless ? playHeadless(options)
+                                : playWindowed(options);
     return status ? int(ExitCode::kOk) : fail(options.package.string(), status.error());
 }

@@ -1,7 +1,7 @@
 #include "runtime/opened_scene.h"
 
-#include "runtime/capture.h"
 #include "image/read_exr.h"
+#include "runtime/capture.h"
 
 #include <future>
 
@@ -61,12 +61,14 @@ Result<OpenedScene> openScene(const PlayerOptions& options, std::span<const char
                               Statistics& statistics)
 {
     // The driver takes as long to start as the package to read.
-    auto reading = std::async([&]
-    {
-        auto package = statistics.timed(statistics.package_ms, [&] { return package::Package::open(options.package); });
-        statistics.open_ms = statistics.elapsedMs();
-        return package;
-    });
+    auto reading = std::async(
+        [&]
+        {
+            auto package =
+                statistics.timed(statistics.package_ms, [&] { return package::Package::open(options.package); });
+            statistics.open_ms = statistics.elapsedMs();
+            return package;
+        });
     auto opened = statistics.timed(statistics.device_ms, [&] { return openDevice(options, window_extensions); });
     auto package = reading.get();
     if (!package)
@@ -81,7 +83,8 @@ Result<OpenedScene> openScene(const PlayerOptions& options, std::span<const char
     if (!opened)
         return opened.error();
     auto& device = opened->device;
-    if (const uint64_t bytes = against->pixels.size() * sizeof(gpu::vec3); bytes > device->limits().maxStorageBufferRange)
+    if (const uint64_t bytes = against->pixels.size() * sizeof(gpu::vec3);
+        bytes > device->limits().maxStorageBufferRange)
         return Error{ExitCode::kDevice,
                      fmt::format("of {}x{} pixels is too large to compare with on {}", against->width, against->height,
                                  device->name()),
@@ -107,8 +110,8 @@ Result<OpenedScene> openScene(const PlayerOptions& options, std::span<const char
                        .against = std::move(*against)};
 }
 
-Status makeRenderer(std::optional<Renderer>& renderer, const OpenedScene& opened, Mode mode, uint32_t width, uint32_t height,
-                    const Settings& settings, bool layers)
+Status makeRenderer(std::optional<Renderer>& renderer, const OpenedScene& opened, Mode mode, uint32_t width,
+                    uint32_t height, const Settings& settings, bool layers)
 {
     renderer.reset(); // its memory first
     if (const Status status = Renderer::checkSize(*opened.device, width, height, mode, settings); !status)
@@ -121,8 +124,8 @@ Status makeRenderer(std::optional<Renderer>& renderer, const OpenedScene& opened
     return Success{};
 }
 
-Status writeResults(const PlayerOptions& options, const OpenedScene& opened, Renderer& renderer, const Settings& settings,
-                    Statistics& statistics)
+Status writeResults(const PlayerOptions& options, const OpenedScene& opened, Renderer& renderer,
+                    const Settings& settings, Statistics& statistics)
 {
     statistics.device = opened.device->name();
     statistics.device_bytes = opened.device->allocatedBytes();
@@ -136,7 +139,9 @@ Status writeResults(const PlayerOptions& options, const OpenedScene& opened, Ren
     }
     fmt::print(stderr, "{}\n", statistics.summary());
     if (!options.output.empty())
-        if (const Status status = capture(options.output, renderer, *opened.device, *opened.scene, settings, options.layers); !status)
+        if (const Status status =
+                capture(options.output, renderer, *opened.device, *opened.scene, settings, options.layers);
+            !status)
             return status.error().about(options.output.string());
     if (!options.stats.empty())
         if (const Status status = statistics.writeJson(options.stats); !status)

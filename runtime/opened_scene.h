@@ -5,8 +5,8 @@
 #include "runtime/statistics.h"
 
 /// Why the view error shows nothing.
-inline constexpr std::string_view kNothingToCompareWith =
-    "the view error needs a rendering to compare with: --against FILE.exr, as --mode reference --output FILE.exr writes it";
+inline constexpr std::string_view kNothingToCompareWith = "the view error needs a rendering to compare with: --against "
+                                                          "FILE.exr, as --mode reference --output FILE.exr writes it";
 
 /// A rendering from elsewhere.
 struct Rendering
@@ -22,11 +22,11 @@ struct OpenedScene
     Instance instance;
     std::unique_ptr<Device> device;
     std::unique_ptr<SceneGpu> scene;
-    std::vector<Camera> cameras; // the package's, at least one
-    Camera camera;               // the selected one
+    std::vector<Camera> cameras;    // the package's, at least one
+    Camera camera;                  // the selected one
     std::optional<CameraPath> path; // of --path
-    Settings settings;           // of the preset and --set
-    Rendering against;           // of --against
+    Settings settings;              // of the preset and --set
+    Rendering against;              // of --against
 };
 
 /// Opens package, device, camera and path as `options` say.
@@ -37,9 +37,9 @@ Result<OpenedScene> openScene(const PlayerOptions& options, std::span<const char
 /// A renderer for pictures of that size, with what its view error compares with.
 /// @return kDevice where they are too large for the device, leaving `renderer` empty
 /// @param layers whether it keeps the layers of its pictures
-Status makeRenderer(std::optional<Renderer>& renderer, const OpenedScene& opened, Mode mode, uint32_t width, uint32_t height,
-                    const Settings& settings, bool layers = false);
+Status makeRenderer(std::optional<Renderer>& renderer, const OpenedScene& opened, Mode mode, uint32_t width,
+                    uint32_t height, const Settings& settings, bool layers = false);
 
 /// Prints the summary on stderr, and writes --output and --stats if given.
-Status writeResults(const PlayerOptions& options, const OpenedScene& opened, Renderer& renderer, const Settings& settings,
-                    Statistics& statistics);
+Status writeResults(const PlayerOptions& options, const OpenedScene& opened, Renderer& renderer,
+                    const Settings& settings, Statistics& statistics);

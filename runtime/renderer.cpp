@@ -36,13 +36,16 @@ Status Renderer::checkSize(const Device& device, uint32_t width, uint32_t height
     const uint64_t most = range / kLargestPixelBytes;
     if (uint64_t(width) * height <= most)
         return mode == Mode::kGi ? GlobalIllumination::checkCounts(device.limits(), range, settings) : Success{};
-    return Error{ExitCode::kDevice, fmt::format("a picture of {}x{} is too large for {}, which takes {:.1f} million pixels", width, height,
-                                                device.name(), double(most) * 1e-6)};
+    return Error{ExitCode::kDevice,
+                 fmt::format("a picture of {}x{} is too large for {}, which takes {:.1f} million pixels", width, height,
+                             device.name(), double(most) * 1e-6)};
 }
 
-Renderer::Renderer(const Device& device, const SceneGpu& scene, Mode mode, uint32_t width, uint32_t height, const Settings& settings)
-    : scene_(scene), width_(width), height_(height), max_batch_(mode == Mode::kReference ? batchFor(device, width * height) : 1),
-      rays_(device, scene), resolve_(device, width * height)
+Renderer::Renderer(const Device& device, const SceneGpu& scene, Mode mode, uint32_t width, uint32_t height,
+                   const Settings& settings)
+    : scene_(scene), width_(width), height_(height),
+      max_batch_(mode == Mode::kReference ? batchFor(device, width * height) : 1), rays_(device, scene),
+      resolve_(device, width * height)
 {
     if (mode == Mode::kReference)
         reference_.emplace(device, scene, width * height, max_batch_);
@@ -72,7 +75,8 @@ FrameInfo Renderer::beginFrame(Recorder& rec, const Camera& camera, const Settin
         resolve_.restart(rec);
         if (lights_stand && went_on_ && goes_on)
             frame.previous = last_camera_;
-        picture_seed_ = frame.previous ? traceSeed(seed, frame.number, 0) : seed; // means need other numbers in every frame
+        picture_seed_ =
+            frame.previous ? traceSeed(seed, frame.number, 0) : seed; // means need other numbers in every frame
         went_on_ = goes_on;
     }
     last_camera_ = frame.camera;
@@ -88,9 +92,11 @@ FrameInfo Renderer::beginFrame(Recorder& rec, const Camera& camera, const Settin
     return frame;
 }
 
-void Renderer::record(Recorder& rec, const Camera& camera, const Settings& settings, uint32_t seed, uint32_t sample_count)
+void Renderer::record(Recorder& rec, const Camera& camera, const Settings& settings, uint32_t seed,
+                      uint32_t sample_count)
 {
-    check(sample_count >= 1 && sample_count <= max_batch_, "{} samples in a frame of at most {}", sample_count, max_batch_);
+    check(sample_count >= 1 && sample_count <= max_batch_, "{} samples in a frame of at most {}", sample_count,
+          max_batch_);
     FrameInfo frame = beginFrame(rec, camera, settings, seed);
     if (gi_)
         return recordGi(rec, frame, settings);
@@ -130,7 +136,8 @@ void Renderer::recordGi(Recorder& rec, const FrameInfo& frame, const Settings& s
     if (is_antialiased_ && frame.stands())
         antialias_->recordStanding(rec, resolve_.sum(), resolve_.sampleCount(), width_ * height_);
     else if (is_antialiased_)
-        antialias_->recordMoving(rec, picture, gi_->motions(), width_, height_, drawn.antialias_frames, frame.previous.has_value());
+        antialias_->recordMoving(rec, picture, gi_->motions(), width_, height_, drawn.antialias_frames,
+                                 frame.previous.has_value());
     if (shows_error_)
         error_->record(rec, resolve_.sum(), resolve_.sampleCount(), width_, height_);
 }
@@ -145,7 +152,8 @@ const Buffer& Renderer::display(Recorder& rec, const Settings& settings, bool bg
     if (shows_error_)
         return resolve_.displayColors(rec, error_->colors(), width_ * height_, bgra);
     if (is_antialiased_)
-        return resolve_.display(rec, antialias_->shown(), 1, width_ * height_, settings.exposure, Tonemap(settings.tonemap), bgra);
+        return resolve_.display(rec, antialias_->shown(), 1, width_ * height_, settings.exposure,
+                                Tonemap(settings.tonemap), bgra);
     if (gi_ && settings.view != gpu::kViewError && isDisplayReferred(settings.view))
         return resolve_.display(rec, width_ * height_, 0, Tonemap::kSrgb, bgra);
     return resolve_.display(rec, width_ * height_, settings.exposure, Tonemap(settings.tonemap), bgra);

@@ -31,10 +31,12 @@ public:
     /// Allocates for pictures of `width` x `height` pixels; make another Renderer for another size,
     /// which checkSize() has let pass.
     /// Mode::kGi allocates for the counts in `settings`; record() may then be given smaller ones.
-    Renderer(const Device& device, const SceneGpu& scene, Mode mode, uint32_t width, uint32_t height, const Settings& settings = {});
+    Renderer(const Device& device, const SceneGpu& scene, Mode mode, uint32_t width, uint32_t height,
+             const Settings& settings = {});
 
     /// Records one frame, `sample_count` more samples a pixel. A changed camera or light starts the picture anew.
-    void record(Recorder& rec, const Camera& camera, const Settings& settings, uint32_t seed, uint32_t sample_count = 1);
+    void record(Recorder& rec, const Camera& camera, const Settings& settings, uint32_t seed,
+                uint32_t sample_count = 1);
     /// The next record() starts the picture anew: settings that decide what samples show have changed.
     void restart() { last_camera_.reset(); }
     /// What the view "error" compares the picture with; without it that view is the picture. See ErrorView.
@@ -68,7 +70,10 @@ public:
     /// Nodes of the last frame's illumination cut in Mode::kGi, but for cut.mode knn; waits for the device.
     uint32_t cutNodeCount(const Device& device) const { return gi_->cutNodeCount(device); }
     /// Share of the pixels that went on from a history in the last frame in Mode::kGi; none where histories are off.
-    std::optional<double> rememberedShare(const Device& device) const { return gi_ ? gi_->rememberedShare(device) : std::nullopt; }
+    std::optional<double> rememberedShare(const Device& device) const
+    {
+        return gi_ ? gi_->rememberedShare(device) : std::nullopt;
+    }
     /// In Mode::kGi: from now on shading points and irradiance samples are those of that seed, whatever the frame's.
     void placeSamplesBy(uint32_t seed) { gi_->placeSamplesBy(seed); }
     /// Counts the rays of frames recorded from now on; null ends that.
@@ -91,7 +96,7 @@ private:
     bool is_antialiased_ = false;             // the last frame
     ResolveStage resolve_;
     std::optional<ErrorView> error_;
-    bool shows_error_ = false; // in the last frame
+    bool shows_error_ = false;                     // in the last frame
     std::optional<gpu::CameraParams> last_camera_; // none: the next picture starts anew
     uint64_t last_lights_ = 0;
     uint32_t frame_count_ = 0;

@@ -13,7 +13,10 @@ namespace
 {
 constexpr uint32_t kWhite = 0x3c003c00; // two halfs of 1
 
-gpu::vec3 toVec3(const lumicut::fb::Vec3& v) { return {v.x(), v.y(), v.z()}; }
+gpu::vec3 toVec3(const lumicut::fb::Vec3& v)
+{
+    return {v.x(), v.y(), v.z()};
+}
 
 gpu::SceneInfo sceneInfo(const package::Package& package)
 {
@@ -32,7 +35,8 @@ gpu::SceneInfo sceneInfo(const package::Package& package)
     if (!lights.empty() && lights.back().kind == gpu::kLightEnvironment)
     {
         info.environment_light = uint32_t(lights.size() - 1);
-        info.environment_importance_size = {meta.environment()->importance_width(), meta.environment()->importance_height()};
+        info.environment_importance_size = {meta.environment()->importance_width(),
+                                            meta.environment()->importance_height()};
         info.environment_turn = meta.environment()->rotation() * float(0.5 / std::numbers::pi);
     }
     return info;
@@ -42,13 +46,11 @@ uint32_t materialFeatures(const gpu::Material& material)
     const gpu::vec3& sheen = material.sheen_color;
     const bool has_sheen = sheen.x > 0 || sheen.y > 0 || sheen.z > 0;
     const bool dielectric_reflects = material.specular > 0 && material.metallic < 1;
-    const bool is_specular = dielectric_reflects || material.metallic > 0 || material.transmission > 0 || material.clearcoat > 0 ||
-                             has_sheen || material.diffuse_transmission > 0;
+    const bool is_specular = dielectric_reflects || material.metallic > 0 || material.transmission > 0 ||
+                             material.clearcoat > 0 || has_sheen || material.diffuse_transmission > 0;
     uint32_t features = (material.transmission > 0 ? gpu::kFeatureTransmission : 0u) |
-                        (material.metallic > 0 ? gpu::kFeatureMetal : 0u) |
-                        (is_specular ? gpu::kFeatureSpecular : 0u) |
-                        (material.clearcoat > 0 ? gpu::kFeatureClearcoat : 0u) |
-                        (has_sheen ? gpu::kFeatureSheen : 0u) |
+                        (material.metallic > 0 ? gpu::kFeatureMetal : 0u) | (is_specular ? gpu::kFeatureSpecular : 0u) |
+                        (material.clearcoat > 0 ? gpu::kFeatureClearcoat : 0u) | (has_sheen ? gpu::kFeatureSheen : 0u) |
                         (material.anisotropy > 0 ? gpu::kFeatureAnisotropy : 0u) |
                         (material.iridescence > 0 ? gpu::kFeatureIridescence : 0u) |
                         (material.dispersion > 0 && material.transmission > 0 ? gpu::kFeatureDispersion : 0u) |
@@ -61,7 +63,8 @@ uint32_t materialFeatures(const gpu::Material& material)
 
 uint32_t sceneFeatures(const package::Package& package)
 {
-    uint32_t features = (package.meta().has_alpha() ? gpu::kFeatureAlpha : 0u) | (package.meta().has_thin() ? gpu::kFeatureThin : 0u);
+    uint32_t features =
+        (package.meta().has_alpha() ? gpu::kFeatureAlpha : 0u) | (package.meta().has_thin() ? gpu::kFeatureThin : 0u);
     for (const gpu::Material& material : package.materials())
         features |= materialFeatures(material);
     if (std::ranges::any_of(package.textureRefs(),
@@ -106,9 +109,10 @@ Result<std::unique_ptr<SceneGpu>> SceneGpu::create(const Device& device, const p
     const auto fits = [&](const char* name, auto data, uint64_t limit)
     {
         if (data.size_bytes() > limit)
-            too_large = Error{ExitCode::kDevice, fmt::format("the scene's {} take {} MiB, more than the {} MiB that a buffer may "
-                                                             "have on {}; try another device or a smaller scene", name,
-                                                             data.size_bytes() >> 20, limit >> 20, device.name())};
+            too_large = Error{ExitCode::kDevice,
+                              fmt::format("the scene's {} take {} MiB, more than the {} MiB that a buffer may "
+                                          "have on {}; try another device or a smaller scene",
+                                          name, data.size_bytes() >> 20, limit >> 20, device.name())};
         return data.size_bytes() <= limit;
     };
     const auto addTexels = [&](const char* name, auto data)
@@ -138,7 +142,8 @@ Result<std::unique_ptr<SceneGpu>> SceneGpu::create(const Device& device, const p
     scene->buffers_.push_back(device.upload("scene.view_scale", std::span(&whole, 1)));
     scene->info_buffer_ = device.upload("scene.info", std::span<const gpu::SceneInfo>(&scene->info_, 1));
     scene->features_ = sceneFeatures(package);
-    scene->constants_ = {{{"kSceneFeatures", scene->features_}, {"kUsedTexturePages", package.meta().texture_pages()->size()}}};
+    scene->constants_ = {
+        {{"kSceneFeatures", scene->features_}, {"kUsedTexturePages", package.meta().texture_pages()->size()}}};
     scene->reflects_roughly_ = std::ranges::any_of(package.materials(), isRough);
     scene->has_smooth_layers_ = std::ranges::any_of(package.materials(), hasSmoothLayer);
     scene->createImages(package);
@@ -158,15 +163,18 @@ void SceneGpu::setLight(Recorder& rec, uint32_t index, const gpu::Light& light)
 {
     check(index < info_.light_count, "light {} of {}", index, info_.light_count);
     ++lights_version_;
-    rec.write(buffers_[gpu::kLightsBinding - gpu::kBvhNodesBinding], index * sizeof(light), std::as_bytes(std::span(&light, 1)));
+    rec.write(buffers_[gpu::kLightsBinding - gpu::kBvhNodesBinding], index * sizeof(light),
+              std::as_bytes(std::span(&light, 1)));
 }
 
 void SceneGpu::setEmission(Recorder& rec, uint32_t index, gpu::vec3 emission)
 {
     const Buffer& materials = buffers_[gpu::kMaterialsBinding - gpu::kBvhNodesBinding];
-    check((index + 1) * sizeof(gpu::Material) <= materials.size(), "material {} of {} bytes of them", index, materials.size());
+    check((index + 1) * sizeof(gpu::Material) <= materials.size(), "material {} of {} bytes of them", index,
+          materials.size());
     ++lights_version_;
-    rec.write(materials, index * sizeof(gpu::Material) + offsetof(gpu::Material, emission), std::as_bytes(std::span(&emission, 1)));
+    rec.write(materials, index * sizeof(gpu::Material) + offsetof(gpu::Material, emission),
+              std::as_bytes(std::span(&emission, 1)));
 }
 
 void SceneGpu::createImages(const package::Package& package)
@@ -175,13 +183,16 @@ void SceneGpu::createImages(const package::Package& package)
     for (uint32_t p = 0; p < package.meta().texture_pages()->size(); ++p)
         pages_.push_back(uploadTexturePage(device_, package, p));
     if (pages_.size() < gpu::kTexturePageCount) // one for all that are not there
-        pages_.push_back(device_.uploadImage("scene.no_page", {.array = true}, std::as_bytes(std::span(kWhite).first(1))));
+        pages_.push_back(
+            device_.uploadImage("scene.no_page", {.array = true}, std::as_bytes(std::span(kWhite).first(1))));
     if (const auto* environment = package.meta().environment())
-        environment_ = device_.uploadImage("scene.environment",
-                                           {.format = VK_FORMAT_R32G32B32A32_SFLOAT, .width = environment->width(), .height = environment->height()},
-                                           std::as_bytes(package.environmentMap()));
+        environment_ = device_.uploadImage(
+            "scene.environment",
+            {.format = VK_FORMAT_R32G32B32A32_SFLOAT, .width = environment->width(), .height = environment->height()},
+            std::as_bytes(package.environmentMap()));
     else
-        environment_ = device_.uploadImage("scene.no_environment", {.format = VK_FORMAT_R32G32B32A32_SFLOAT}, std::as_bytes(std::span(kWhite)));
+        environment_ = device_.uploadImage("scene.no_environment", {.format = VK_FORMAT_R32G32B32A32_SFLOAT},
+                                           std::as_bytes(std::span(kWhite)));
 }
 
 void SceneGpu::createDescriptorSet()
@@ -229,12 +240,13 @@ void SceneGpu::createDescriptorSet()
         buffers.push_back({buffer->handle(), 0, VK_WHOLE_SIZE});
     std::vector<VkDescriptorImageInfo> images;
     for (size_t p = 0; p < gpu::kTexturePageCount; ++p)
-        images.push_back({texture_sampler_, pages_[std::min(p, pages_.size() - 1)].view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL});
+        images.push_back({texture_sampler_, pages_[std::min(p, pages_.size() - 1)].view(),
+                          VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL});
     images.push_back({environment_sampler_, environment_.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL});
 
     std::vector<VkWriteDescriptorSet> writes;
-    const auto write = [&](uint32_t binding, VkDescriptorType type, uint32_t count, const VkDescriptorBufferInfo* buffer,
-                           const VkDescriptorImageInfo* image)
+    const auto write = [&](uint32_t binding, VkDescriptorType type, uint32_t count,
+                           const VkDescriptorBufferInfo* buffer, const VkDescriptorImageInfo* image)
     {
         writes.push_back({.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
                           .dstSet = set_,
@@ -252,7 +264,8 @@ void SceneGpu::createDescriptorSet()
     }
     for (uint32_t b = kTexelBufferCount; b < buffers_.size(); ++b)
         write(gpu::kBvhNodesBinding + b, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, &buffers[b + 1], nullptr);
-    write(gpu::kTexturePagesBinding, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, gpu::kTexturePageCount, nullptr, images.data());
+    write(gpu::kTexturePagesBinding, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, gpu::kTexturePageCount, nullptr,
+          images.data());
     write(gpu::kEnvironmentMapBinding, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 1, nullptr, &images.back());
     vkUpdateDescriptorSets(device_.handle(), uint32_t(writes.size()), writes.data(), 0, nullptr);
 }

@@ -65,9 +65,10 @@ private:
     bool reflects_roughly_ = false;
     bool has_smooth_layers_ = false;
     Buffer info_buffer_;
-    std::vector<Buffer> buffers_; // by binding, kBvhNodesBinding first
+    std::vector<Buffer> buffers_;      // by binding, kBvhNodesBinding first
     std::vector<const Buffer*> bound_; // by binding
-    std::vector<Image> pages_;    // the package's, then a white one of 1 x 1 for those that are missing to kTexturePageCount
+    std::vector<Image>
+        pages_; // the package's, then a white one of 1 x 1 for those that are missing to kTexturePageCount
     Image environment_;
     VkSampler texture_sampler_ = VK_NULL_HANDLE, environment_sampler_ = VK_NULL_HANDLE;
     VkDescriptorPool pool_ = VK_NULL_HANDLE;

@@ -9,19 +9,19 @@
 struct Statistics
 {
     std::string device;
-    double open_ms = 0;         // package verified, since the start
-    double package_ms = 0;      // reading and verifying it, side by side with device_ms
-    double device_ms = 0;       // finding and opening the device
-    double upload_ms = 0;       // bringing the scene to it
-    double ready_ms = 0;        // all that done, since the start; what follows is the stages' memory, tables and pipelines
+    double open_ms = 0;    // package verified, since the start
+    double package_ms = 0; // reading and verifying it, side by side with device_ms
+    double device_ms = 0;  // finding and opening the device
+    double upload_ms = 0;  // bringing the scene to it
+    double ready_ms = 0;   // all that done, since the start; what follows is the stages' memory, tables and pipelines
     double first_submit_ms = 0; // first frame handed to the device, since the start
     double pipeline_ms = 0;     // of that, building pipelines
     uint64_t device_bytes = 0;
     uint32_t sample_count = 0; // a pixel
     uint32_t non_finite_samples = 0;
-    uint32_t photon_paths = 0;       // of the last frame's map, whole in it
-    uint32_t photon_paths_asked = 0; // more than those where the store was full
-    uint32_t photons = 0;            // that they left
+    uint32_t photon_paths = 0;                  // of the last frame's map, whole in it
+    uint32_t photon_paths_asked = 0;            // more than those where the store was full
+    uint32_t photons = 0;                       // that they left
     std::vector<std::vector<StageTime>> frames; // of the first kMeasuredFrames submissions
 
     double elapsedMs() const;

@@ -14,12 +14,18 @@ VkFormat vulkanFormat(TextureEncoding encoding)
 {
     switch (encoding)
     {
-    case TextureEncoding::Rgba8Srgb: return VK_FORMAT_R8G8B8A8_SRGB;
-    case TextureEncoding::Bc7Srgb: return VK_FORMAT_BC7_SRGB_BLOCK;
-    case TextureEncoding::Bc7Unorm: return VK_FORMAT_BC7_UNORM_BLOCK;
-    case TextureEncoding::Bc5Unorm: return VK_FORMAT_BC5_UNORM_BLOCK;
-    case TextureEncoding::Bc4Unorm: return VK_FORMAT_BC4_UNORM_BLOCK;
-    case TextureEncoding::Rgba8Unorm: break;
+    case TextureEncoding::Rgba8Srgb:
+        return VK_FORMAT_R8G8B8A8_SRGB;
+    case TextureEncoding::Bc7Srgb:
+        return VK_FORMAT_BC7_SRGB_BLOCK;
+    case TextureEncoding::Bc7Unorm:
+        return VK_FORMAT_BC7_UNORM_BLOCK;
+    case TextureEncoding::Bc5Unorm:
+        return VK_FORMAT_BC5_UNORM_BLOCK;
+    case TextureEncoding::Bc4Unorm:
+        return VK_FORMAT_BC4_UNORM_BLOCK;
+    case TextureEncoding::Rgba8Unorm:
+        break;
     }
     return VK_FORMAT_R8G8B8A8_UNORM;
 }
@@ -40,7 +46,8 @@ void decodeLevel(TextureEncoding encoding, const std::byte* block, uint32_t widt
             const blocks::Texels texels = decodeBlock(encoding, block);
             const uint32_t columns = std::min(blocks::kSide, width - x), rows = std::min(blocks::kSide, height - y);
             for (uint32_t row = 0; row < rows; ++row)
-                std::memcpy(out + 4 * ((size_t(y) + row) * width + x), &texels[blocks::kSide * row], size_t(4) * columns);
+                std::memcpy(out + 4 * ((size_t(y) + row) * width + x), &texels[blocks::kSide * row],
+                            size_t(4) * columns);
         }
 }
 } // namespace
@@ -55,11 +62,12 @@ std::vector<std::byte> decodePage(const lumicut::fb::TexturePage& page, std::spa
         const uint32_t width = std::max(page.width() >> level, 1u), height = std::max(page.height() >> level, 1u);
         for (uint32_t layer = 0; layer < page.layers(); ++layer)
         {
-            tasks.emplace_back([&texels, &page, from = bytes.data() + source, width, height, target]() -> Status
-            {
-                decodeLevel(page.encoding(), from, width, height, texels.data() + target);
-                return Success{};
-            });
+            tasks.emplace_back(
+                [&texels, &page, from = bytes.data() + source, width, height, target]() -> Status
+                {
+                    decodeLevel(page.encoding(), from, width, height, texels.data() + target);
+                    return Success{};
+                });
             source += package::levelBytes(page.encoding(), width, height);
             target += size_t(4) * width * height;
         }

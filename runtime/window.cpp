@@ -13,8 +13,10 @@ Error noDisplay(const char* fallback)
 {
     const char* reason = nullptr;
     glfwGetError(&reason);
-    return {ExitCode::kDevice, fmt::format("there is no display to open a window on ({}); --headless --output picture.png "
-                                           "renders to a file", reason ? reason : fallback)};
+    return {ExitCode::kDevice,
+            fmt::format("there is no display to open a window on ({}); --headless --output picture.png "
+                        "renders to a file",
+                        reason ? reason : fallback)};
 }
 } // namespace
 
@@ -37,13 +39,14 @@ void Window::listen()
 {
     glfwSetWindowUserPointer(window_, this);
     glfwSetInputMode(window_, GLFW_STICKY_KEYS, GLFW_TRUE); // a short tap counts, however long a frame takes
-    glfwSetKeyCallback(window_, [](GLFWwindow* handle, int key, int, int action, int)
-    {
-        if (action == GLFW_PRESS)
-            static_cast<Window*>(glfwGetWindowUserPointer(handle))->pressed_.push_back(key);
-    });
+    glfwSetKeyCallback(window_,
+                       [](GLFWwindow* handle, int key, int, int action, int)
+                       {
+                           if (action == GLFW_PRESS)
+                               static_cast<Window*>(glfwGetWindowUserPointer(handle))->pressed_.push_back(key);
+                       });
     glfwSetScrollCallback(window_, [](GLFWwindow* handle, double, double notches)
-    { static_cast<Window*>(glfwGetWindowUserPointer(handle))->wheel_ += notches; });
+                          { static_cast<Window*>(glfwGetWindowUserPointer(handle))->wheel_ += notches; });
     glfwGetCursorPos(window_, &cursor_x_, &cursor_y_);
 }
 
@@ -90,15 +93,25 @@ void Window::poll(bool wait)
         glfwPollEvents();
 }
 
-bool Window::closing() const { return glfwWindowShouldClose(window_); }
+bool Window::closing() const
+{
+    return glfwWindowShouldClose(window_);
+}
 
-void Window::close() { glfwSetWindowShouldClose(window_, GLFW_TRUE); }
+void Window::close()
+{
+    glfwSetWindowShouldClose(window_, GLFW_TRUE);
+}
 
-std::vector<int> Window::takeKeys() { return std::exchange(pressed_, {}); }
+std::vector<int> Window::takeKeys()
+{
+    return std::exchange(pressed_, {});
+}
 
 FlyInput Window::takeFlyInput(bool keyboard, bool mouse)
 {
-    const double last_x = std::exchange(cursor_x_, 0), last_y = std::exchange(cursor_y_, 0), wheel = std::exchange(wheel_, 0);
+    const double last_x = std::exchange(cursor_x_, 0), last_y = std::exchange(cursor_y_, 0),
+                 wheel = std::exchange(wheel_, 0);
     glfwGetCursorPos(window_, &cursor_x_, &cursor_y_);
 
     FlyInput input;
@@ -116,7 +129,8 @@ FlyInput Window::takeFlyInput(bool keyboard, bool mouse)
     {
         int width = 0, height = 0; // of the window, in the cursor's unit
         glfwGetWindowSize(window_, &width, &height);
-        const float radians = std::numbers::pi_v<float> / float(std::max(height, 1)); // half a turn over the window's height
+        const float radians =
+            std::numbers::pi_v<float> / float(std::max(height, 1)); // half a turn over the window's height
         input.yaw = float(last_x - cursor_x_) * radians;
         input.pitch = float(last_y - cursor_y_) * radians;
     }

@@ -7,11 +7,14 @@
 
 namespace
 {
-void mustSucceed(VkResult result) { vulkanCheck(result); }
+void mustSucceed(VkResult result)
+{
+    vulkanCheck(result);
+}
 } // namespace
 
-WindowOverlay::WindowOverlay(const Window& window, const Instance& instance, const Device& device, const Swapchain& swapchain,
-                             Recorder& rec)
+WindowOverlay::WindowOverlay(const Window& window, const Instance& instance, const Device& device,
+                             const Swapchain& swapchain, Recorder& rec)
     : device_(device)
 {
     constexpr VkDescriptorPoolSize kFont{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 1};
@@ -70,6 +73,12 @@ void WindowOverlay::draw(VkCommandBuffer commands)
     ImGui_ImplVulkan_RenderDrawData(ImGui::GetDrawData(), commands);
 }
 
-bool WindowOverlay::wantsKeyboard() const { return ImGui::GetIO().WantTextInput; }
+bool WindowOverlay::wantsKeyboard() const
+{
+    return ImGui::GetIO().WantTextInput;
+}
 
-bool WindowOverlay::wantsMouse() const { return ImGui::GetIO().WantCaptureMouse; }
+bool WindowOverlay::wantsMouse() const
+{
+    return ImGui::GetIO().WantCaptureMouse;
+}

@@ -7,7 +7,8 @@
 class WindowOverlay
 {
 public:
-    WindowOverlay(const Window& window, const Instance& instance, const Device& device, const Swapchain& swapchain, Recorder& rec);
+    WindowOverlay(const Window& window, const Instance& instance, const Device& device, const Swapchain& swapchain,
+                  Recorder& rec);
     ~WindowOverlay();
     WindowOverlay(const WindowOverlay&) = delete;
     WindowOverlay& operator=(const WindowOverlay&) = delete;

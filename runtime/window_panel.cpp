@@ -4,13 +4,17 @@
 
 namespace
 {
-void text(const std::string& line) { ImGui::TextUnformatted(line.data(), line.data() + line.size()); }
+void text(const std::string& line)
+{
+    ImGui::TextUnformatted(line.data(), line.data() + line.size());
+}
 
 void showFacts(const PanelFacts& facts)
 {
     text(std::string(facts.device));
     text(fmt::format("{} x {}, {} samples a pixel", facts.width, facts.height, facts.sample_count));
-    text(fmt::format("{:8.2f} ms a frame ({:.1f} a second)", facts.frame_ms, facts.frame_ms > 0 ? 1000 / facts.frame_ms : 0));
+    text(fmt::format("{:8.2f} ms a frame ({:.1f} a second)", facts.frame_ms,
+                     facts.frame_ms > 0 ? 1000 / facts.frame_ms : 0));
     for (const StageTime& stage : facts.stages)
         text(fmt::format("{:8.2f} ms {}", stage.ms, stage.name));
 }
@@ -48,7 +52,8 @@ bool editSetting(const Setting& setting, uint32_t& value)
         return ImGui::SliderScalar(name.c_str(), ImGuiDataType_U32, &value, &least, &most, nullptr,
                                    ImGuiSliderFlags_AlwaysClamp | (most > 100 ? ImGuiSliderFlags_Logarithmic : 0));
     }
-    const std::string items = choiceNames(setting, std::string_view("\0", 1)) + '\0'; // ImGui wants each name ended by a zero, and the list by one more
+    const std::string items = choiceNames(setting, std::string_view("\0", 1)) +
+                              '\0'; // ImGui wants each name ended by a zero, and the list by one more
     int index = int(value);
     const bool changed = ImGui::Combo(name.c_str(), &index, items.c_str());
     value = uint32_t(index);
@@ -58,13 +63,15 @@ bool editSetting(const Setting& setting, uint32_t& value)
 bool editSetting(const Setting& setting, float& value)
 {
     const std::string name(setting.name), format = setting.unit.empty() ? "%.3g" : fmt::format("%.2f {}", setting.unit);
-    return ImGui::SliderFloat(name.c_str(), &value, float(setting.least), float(setting.most), format.c_str(), ImGuiSliderFlags_AlwaysClamp);
+    return ImGui::SliderFloat(name.c_str(), &value, float(setting.least), float(setting.most), format.c_str(),
+                              ImGuiSliderFlags_AlwaysClamp);
 }
 
 /// Whether the setting decides only how the samples are shown.
 bool isDisplaySetting(const Setting& setting)
 {
-    return setting.member == decltype(setting.member)(&Settings::exposure) || setting.member == decltype(setting.member)(&Settings::tonemap);
+    return setting.member == decltype(setting.member)(&Settings::exposure) ||
+           setting.member == decltype(setting.member)(&Settings::tonemap);
 }
 
 bool editSettings(Settings& settings)
@@ -73,8 +80,10 @@ bool editSettings(Settings& settings)
     ImGui::PushItemWidth(ImGui::GetFontSize() * 10);
     for (const Setting& setting : allSettings())
     {
-        const bool changed = std::visit([&](auto member) { return editSetting(setting, settings.*member); }, setting.member);
-        restart |= changed && (!isDisplaySetting(setting) || settings.view != gpu::kViewNone); // views hold what is behind them
+        const bool changed =
+            std::visit([&](auto member) { return editSetting(setting, settings.*member); }, setting.member);
+        restart |= changed &&
+                   (!isDisplaySetting(setting) || settings.view != gpu::kViewNone); // views hold what is behind them
         if (ImGui::IsItemHovered())
             ImGui::SetTooltip("%s", std::string(setting.help).c_str());
     }

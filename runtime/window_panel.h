@@ -11,7 +11,7 @@ struct PanelFacts
     double frame_ms;        // from one frame to the next
     std::span<const StageTime> stages;
     std::span<const Camera> cameras;
-    float speed; // metres a second
+    float speed;             // metres a second
     std::string_view notice; // "" or the last thing that happened, such as a screenshot
 };
 

@@ -29,7 +29,8 @@ std::string freeName(const char* stem, std::initializer_list<const char*> extens
     for (uint32_t number = 1;; ++number)
     {
         const std::string name = fmt::format("{}-{:04}", stem, number);
-        if (std::ranges::none_of(extensions, [&](const char* extension) { return std::filesystem::exists(name + extension); }))
+        if (std::ranges::none_of(extensions,
+                                 [&](const char* extension) { return std::filesystem::exists(name + extension); }))
             return name;
     }
 }
@@ -39,8 +40,10 @@ class WindowedPlayer
 {
 public:
     WindowedPlayer(const PlayerOptions& options, Window& window, const OpenedScene& opened, Swapchain& swapchain)
-        : options_(options), settings_(opened.settings), window_(window), opened_(opened), swapchain_(swapchain),
-          flights_{Flight(*opened.device), Flight(*opened.device)}, overlay_(window, opened.instance, *opened.device, swapchain, flights_[0].rec), fly_(opened.camera, sceneSize(*opened.scene)), follows_path_(opened.path.has_value())
+        : options_(options), settings_(opened.settings), window_(window), opened_(opened),
+          swapchain_(swapchain), flights_{Flight(*opened.device), Flight(*opened.device)},
+          overlay_(window, opened.instance, *opened.device, swapchain, flights_[0].rec),
+          fly_(opened.camera, sceneSize(*opened.scene)), follows_path_(opened.path.has_value())
     {
     }
 
@@ -109,7 +112,8 @@ void WindowedPlayer::saveScreenshot()
     const std::string name = freeName("screenshot", {".png", ".exr"});
     notice_ = fmt::format("wrote {}.png and .exr", name);
     for (const char* extension : {".png", ".exr"})
-        if (const Status status = capture(name + extension, *renderer_, *opened_.device, *opened_.scene, settings_); !status)
+        if (const Status status = capture(name + extension, *renderer_, *opened_.device, *opened_.scene, settings_);
+            !status)
             notice_ = status.error().message;
     fmt::print(stderr, "{}\n", notice_);
 }
@@ -289,13 +293,15 @@ Status WindowedPlayer::play(Statistics& statistics)
 Status playWindowed(const PlayerOptions& options)
 {
     Statistics statistics;
-    const auto window = Window::open(fmt::format("Lumicut - {}", options.package.filename().string()), options.width, options.height);
+    const auto window =
+        Window::open(fmt::format("Lumicut - {}", options.package.filename().string()), options.width, options.height);
     if (!window)
         return window.error();
     const auto opened = openScene(options, (*window)->instanceExtensions(), statistics);
     if (!opened)
         return opened.error();
-    const auto swapchain = Swapchain::create(opened->instance, *opened->device, (*window)->createSurface(opened->instance));
+    const auto swapchain =
+        Swapchain::create(opened->instance, *opened->device, (*window)->createSurface(opened->instance));
     if (!swapchain)
         return swapchain.error();
     WindowedPlayer player(options, **window, *opened, **swapchain);

@@ -68,11 +68,12 @@ void writeBlocks(std::ostream& out, const nlohmann::json& reflection)
     for (const auto& block : reflection.value("ssbos", nlohmann::json::array()))
         if (block.at("set") == 1)
             out << "    {\"" << block.at("name").get<std::string>() << "\", " << block.at("binding") << ", "
-                << (block.value("writeonly", false) ? "false" : "true") << ", " << (block.value("readonly", false) ? "false" : "true")
-                << ", false},\n";
+                << (block.value("writeonly", false) ? "false" : "true") << ", "
+                << (block.value("readonly", false) ? "false" : "true") << ", false},\n";
     for (const auto& image : reflection.value("separate_images", nlohmann::json::array()))
         if (image.at("set") == 1)
-            out << "    {\"" << image.at("name").get<std::string>() << "\", " << image.at("binding") << ", true, false, true},\n";
+            out << "    {\"" << image.at("name").get<std::string>() << "\", " << image.at("binding")
+                << ", true, false, true},\n";
 }
 
 /// Set 0: buffers of the scene, which kernels only read. Its images never change.
@@ -83,7 +84,8 @@ void writeSceneBindings(std::ostream& out, const Module& module)
             if (block.at("set") == 0)
             {
                 if (kind == std::string("ssbos") && !block.value("readonly", false))
-                    fail(module.name, "block '" + block.at("name").get<std::string>() + "' of the scene must be readonly");
+                    fail(module.name,
+                         "block '" + block.at("name").get<std::string>() + "' of the scene must be readonly");
                 out << block.at("binding") << ", ";
             }
 }
@@ -133,7 +135,9 @@ int main(int argc, char** argv)
     for (int i = 5; i + 2 < argc; i += 3)
     {
         modules.push_back({argv[i], readWords(argv[i + 1]), nlohmann::json::parse(std::ifstream(argv[i + 2]))});
-        if (const std::string error = structs.add(std::string(argv[3]) + "/" + modules.back().name + ".comp", modules.back().reflection); !error.empty())
+        if (const std::string error =
+                structs.add(std::string(argv[3]) + "/" + modules.back().name + ".comp", modules.back().reflection);
+            !error.empty())
             fail(modules.back().name, error);
     }
     std::ofstream out(argv[1]);
@@ -146,7 +150,8 @@ int main(int argc, char** argv)
     out << "constexpr KernelCode kCodes[]{\n";
     for (const Module& module : modules)
         writeEntry(out, module);
-    out << "};\n}\nstd::span<const KernelCode> " << argv[4] << "();\nstd::span<const KernelCode> " << argv[4] << "() { return kCodes; }\n";
+    out << "};\n}\nstd::span<const KernelCode> " << argv[4] << "();\nstd::span<const KernelCode> " << argv[4]
+        << "() { return kCodes; }\n";
     out.close();
     return out ? 0 : 1;
 }

@@ -19,14 +19,17 @@ uint32_t memberBytes(const json& types, const json& member)
 /// What follows `keyword` in `line` up to one of `ends`; "" where the line does not begin with it.
 std::string wordAfter(const std::string& line, const std::string& keyword, const char* ends)
 {
-    return line.starts_with(keyword) ? line.substr(keyword.size(), line.find_first_of(ends, keyword.size()) - keyword.size()) : "";
+    return line.starts_with(keyword)
+               ? line.substr(keyword.size(), line.find_first_of(ends, keyword.size()) - keyword.size())
+               : "";
 }
 } // namespace
 
 uint32_t typeBytes(const json& types, const std::string& type)
 {
     static const std::vector<std::pair<std::string, uint32_t>> kSizes{
-        {"float", 4}, {"uint", 4}, {"int", 4}, {"vec2", 8}, {"uvec2", 8}, {"vec3", 12}, {"uvec3", 12}, {"vec4", 16}, {"uvec4", 16}, {"mat4", 64}};
+        {"float", 4}, {"uint", 4},   {"int", 4},   {"vec2", 8},   {"uvec2", 8},
+        {"vec3", 12}, {"uvec3", 12}, {"vec4", 16}, {"uvec4", 16}, {"mat4", 64}};
     for (const auto& [name, bytes] : kSizes)
         if (name == type)
             return bytes;
@@ -36,7 +39,8 @@ uint32_t typeBytes(const json& types, const std::string& type)
     return end;
 }
 
-void SharedStructs::findHeaders(const std::filesystem::path& file, std::set<std::filesystem::path>& seen, Headers& headers) const
+void SharedStructs::findHeaders(const std::filesystem::path& file, std::set<std::filesystem::path>& seen,
+                                Headers& headers) const
 {
     if (!seen.insert(file).second)
         return;
@@ -67,12 +71,13 @@ bool SharedStructs::addStruct(const std::string& type, const json& types, const 
     for (const json& member : members)
     {
         const std::string field = member.at("name");
-        assertions_.insert("static_assert(offsetof(" + qualified + ", " + field + ") == " + std::to_string(member.at("offset").get<uint32_t>()) +
-                           " && sizeof(" + qualified + "::" + field + ") == " + std::to_string(memberBytes(types, member)) + ", \"" +
-                           name + "." + field + " lies elsewhere in kernels\");\n");
+        assertions_.insert("static_assert(offsetof(" + qualified + ", " + field +
+                           ") == " + std::to_string(member.at("offset").get<uint32_t>()) + " && sizeof(" + qualified +
+                           "::" + field + ") == " + std::to_string(memberBytes(types, member)) + ", \"" + name + "." +
+                           field + " lies elsewhere in kernels\");\n");
     }
-    assertions_.insert("static_assert(sizeof(" + qualified + ") == " + std::to_string(typeBytes(types, type)) + ", \"" + name +
-                       " has another size in kernels\");\n");
+    assertions_.insert("static_assert(sizeof(" + qualified + ") == " + std::to_string(typeBytes(types, type)) + ", \"" +
+                       name + " has another size in kernels\");\n");
     return true;
 }
 
@@ -84,8 +89,10 @@ std::string SharedStructs::add(const std::filesystem::path& source, const json& 
     for (const char* kind : {"push_constants", "ssbos", "ubos"})
         for (const json& block : reflection.value(kind, json::array()))
             for (const json& member : reflection.at("types").at(block.at("type").get<std::string>()).at("members"))
-                if (!addStruct(member.at("type"), reflection.at("types"), headers) && kind == std::string("push_constants"))
-                    return "the parameter '" + member.at("name").get<std::string>() + "' is no struct of a header that " + source.string() + " includes";
+                if (!addStruct(member.at("type"), reflection.at("types"), headers) &&
+                    kind == std::string("push_constants"))
+                    return "the parameter '" + member.at("name").get<std::string>() +
+                           "' is no struct of a header that " + source.string() + " includes";
     return "";
 }
 

@@ -6,7 +6,7 @@
 
 struct FrameInfo
 {
-    gpu::CameraParams camera;                  // its first_sample is `accumulated`; its seed is that of all frames of a static view
+    gpu::CameraParams camera; // its first_sample is `accumulated`; its seed is that of all frames of a static view
     std::optional<gpu::CameraParams> previous; // of the last frame, if this one may reuse its results
     uint32_t map_seed = 0;                     // of photon maps, the same in all frames that may share one
     uint32_t number = 0;                       // frames that the renderer recorded before

@@ -12,8 +12,11 @@ LightBuffers::LightBuffers(const Device& device, uint32_t point_count)
 
 void LightBuffers::clear(Recorder& rec, uint32_t terms) const
 {
-    const std::pair<uint32_t, const Buffer*> added[] = {
-        {gpu::kLightSharpDirect, &sharp_direct}, {gpu::kLightDirect, &direct}, {gpu::kLightIndirect, &indirect}, {gpu::kLightGlossy, &glossy}, {gpu::kLightCaustics, &caustics}};
+    const std::pair<uint32_t, const Buffer*> added[] = {{gpu::kLightSharpDirect, &sharp_direct},
+                                                        {gpu::kLightDirect, &direct},
+                                                        {gpu::kLightIndirect, &indirect},
+                                                        {gpu::kLightGlossy, &glossy},
+                                                        {gpu::kLightCaustics, &caustics}};
     for (const auto& [term, light] : added)
         if ((terms & term) != 0)
             rec.clear(*light);

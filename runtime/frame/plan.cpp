@@ -27,9 +27,11 @@ bool shows(const Settings& settings, uint32_t term)
 /// picture converges. Histories spare a pass, too.
 uint32_t denoisePasses(const Settings& settings, const FrameTraits& traits, const FrameInfo& frame)
 {
-    const uint32_t fewer = uint32_t(std::bit_width(frame.accumulated + 1)) / 2 + (frame.previous && settings.history_frames > 0 ? 1 : 0);
+    const uint32_t fewer =
+        uint32_t(std::bit_width(frame.accumulated + 1)) / 2 + (frame.previous && settings.history_frames > 0 ? 1 : 0);
     const bool noisy = traits.has_noisy_direct || traits.has_specular;
-    return noisy && settings.view == gpu::kViewNone && settings.denoise_passes > fewer ? settings.denoise_passes - fewer : 0;
+    return noisy && settings.view == gpu::kViewNone && settings.denoise_passes > fewer ? settings.denoise_passes - fewer
+                                                                                       : 0;
 }
 } // namespace
 
@@ -50,11 +52,13 @@ FramePlan planFrame(const Settings& settings, const FrameTraits& traits, const F
     plan.makes_map = plan.indirect || plan.glossy;
     // Rough reflection is from the samples' harmonics in the first frame of a picture, with little noise; harmonics of order 4
     // lose detail, so that the frames after it trace rays.
-    plan.harmonics = plan.glossy && traits.reflects_roughly && GlossyMode(settings.glossy_mode) == GlossyMode::kHarmonics && !frame.stands();
+    plan.harmonics = plan.glossy && traits.reflects_roughly &&
+                     GlossyMode(settings.glossy_mode) == GlossyMode::kHarmonics && !frame.stands();
     // Interpolation blurs what is smaller than the distance of samples, however many frames it has.
     const bool own_rays = traits.gathers_at_pixels && settings.view != gpu::kViewIrradiance &&
                           frame.accumulated >= std::max(kOwnRays / traits.pixel_rays, kLeastInterpolated);
-    const bool gathers = plan.makes_map && (plan.indirect || traits.has_guide); // the guide learns the same whatever is shown
+    const bool gathers =
+        plan.makes_map && (plan.indirect || traits.has_guide); // the guide learns the same whatever is shown
     plan.gathers_at_pixels = gathers && own_rays;
     plan.gathers_at_samples = (gathers && !own_rays) || plan.harmonics;
     // Each costs rays a pass over a mostly empty queue. Without mirrors and glass there are only smooth layers over something

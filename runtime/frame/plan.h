@@ -20,22 +20,23 @@ struct FrameTraits
 struct FramePlan
 {
     bool emission, direct, indirect, glossy, caustics; // terms that the frame shows
-    bool noisy_direct;       // direct light that one ray samples only in part
-    bool makes_map;          // photons, their tree and the cut are needed
-    bool gathers_at_samples; // final gathering at irradiance samples, between which pixels interpolate
-    bool gathers_at_pixels;  // final gathering at every pixel instead
-    bool harmonics;          // rough reflection is computed from the samples' harmonics where they suffice
-    uint32_t chain_depth;    // delta events that gathering rays follow
-    uint32_t denoise_passes; // of the filter over what is noisy; 0: none
-    bool remembers;          // light is averaged with histories, and histories are updated
-    bool antialiases;        // the picture is blended with the last one
-    float roulette_threshold;  // Russian-roulette threshold of glossy rays
+    bool noisy_direct;                                 // direct light that one ray samples only in part
+    bool makes_map;                                    // photons, their tree and the cut are needed
+    bool gathers_at_samples;  // final gathering at irradiance samples, between which pixels interpolate
+    bool gathers_at_pixels;   // final gathering at every pixel instead
+    bool harmonics;           // rough reflection is computed from the samples' harmonics where they suffice
+    uint32_t chain_depth;     // delta events that gathering rays follow
+    uint32_t denoise_passes;  // of the filter over what is noisy; 0: none
+    bool remembers;           // light is averaged with histories, and histories are updated
+    bool antialiases;         // the picture is blended with the last one
+    float roulette_threshold; // Russian-roulette threshold of glossy rays
 
     /// gpu::kLight* bits of the terms that the frame makes.
     uint32_t lightTerms() const
     {
-        return (emission ? gpu::kLightEmission : 0u) | (direct ? gpu::kLightSharpDirect : 0u) | (direct && noisy_direct ? gpu::kLightDirect : 0u) |
-               (indirect ? gpu::kLightIndirect : 0u) | (glossy ? gpu::kLightGlossy : 0u) | (caustics ? gpu::kLightCaustics : 0u);
+        return (emission ? gpu::kLightEmission : 0u) | (direct ? gpu::kLightSharpDirect : 0u) |
+               (direct && noisy_direct ? gpu::kLightDirect : 0u) | (indirect ? gpu::kLightIndirect : 0u) |
+               (glossy ? gpu::kLightGlossy : 0u) | (caustics ? gpu::kLightCaustics : 0u);
     }
     bool operator==(const FramePlan&) const = default;
 };

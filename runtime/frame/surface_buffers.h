@@ -5,7 +5,8 @@
 
 struct SurfaceBuffers
 {
-    const Buffer& points;         // gpu::ShadingPoint[point_count]; the second point of a pixel lies pixel_count after the first
+    const Buffer&
+        points; // gpu::ShadingPoint[point_count]; the second point of a pixel lies pixel_count after the first
     const Buffer& diffuse_points; // gpu::DiffusePoint[point_count], with a texel view
     uint32_t point_count;         // pixels, or twice as many
 };

@@ -27,13 +27,16 @@ Result<std::unique_ptr<Device>> Device::create(const Instance& instance, uint32_
     vkGetPhysicalDeviceQueueFamilyProperties(device->physical_, &count, nullptr);
     std::vector<VkQueueFamilyProperties> families(count);
     vkGetPhysicalDeviceQueueFamilyProperties(device->physical_, &count, families.data());
-    const auto family = std::ranges::find_if(families, [](const auto& f)
-    {
-        constexpr VkQueueFlags kNeeds = VK_QUEUE_COMPUTE_BIT | VK_QUEUE_GRAPHICS_BIT;
-        return (f.queueFlags & kNeeds) == kNeeds && f.timestampValidBits > 0;
-    });
+    const auto family = std::ranges::find_if(families,
+                                             [](const auto& f)
+                                             {
+                                                 constexpr VkQueueFlags kNeeds =
+                                                     VK_QUEUE_COMPUTE_BIT | VK_QUEUE_GRAPHICS_BIT;
+                                                 return (f.queueFlags & kNeeds) == kNeeds && f.timestampValidBits > 0;
+                                             });
     if (family == families.end())
-        return Error{ExitCode::kDevice, fmt::format("{} has no queue for graphics, compute and timestamps", device->name())};
+        return Error{ExitCode::kDevice,
+                     fmt::format("{} has no queue for graphics, compute and timestamps", device->name())};
     device->queue_family_ = uint32_t(family - families.begin());
 
     constexpr float kPriority = 1;
@@ -67,10 +70,13 @@ Result<std::unique_ptr<Device>> Device::create(const Instance& instance, uint32_
         .enabledExtensionCount = uint32_t(extensions.size()),
         .ppEnabledExtensionNames = extensions.data(),
     };
-    if (const VkResult result = vkCreateDevice(device->physical_, &info, nullptr, &device->device_); result != VK_SUCCESS)
-        return Error{ExitCode::kDevice, fmt::format("{} cannot be opened ({})", device->name(), vulkanResultName(result))};
+    if (const VkResult result = vkCreateDevice(device->physical_, &info, nullptr, &device->device_);
+        result != VK_SUCCESS)
+        return Error{ExitCode::kDevice,
+                     fmt::format("{} cannot be opened ({})", device->name(), vulkanResultName(result))};
     vkGetDeviceQueue(device->device_, device->queue_family_, 0, &device->queue_);
-    device->set_name_ = PFN_vkSetDebugUtilsObjectNameEXT(vkGetInstanceProcAddr(instance.handle(), "vkSetDebugUtilsObjectNameEXT"));
+    device->set_name_ =
+        PFN_vkSetDebugUtilsObjectNameEXT(vkGetInstanceProcAddr(instance.handle(), "vkSetDebugUtilsObjectNameEXT"));
     device->createLayouts();
     device->loadPipelineCache();
     return device;
@@ -80,7 +86,12 @@ void Device::createLayouts()
 {
     std::vector<VkDescriptorSetLayoutBinding> bindings;
     const auto add = [&](uint32_t binding, VkDescriptorType type, uint32_t count)
-    { bindings.push_back({.binding = binding, .descriptorType = type, .descriptorCount = count, .stageFlags = VK_SHADER_STAGE_COMPUTE_BIT}); };
+    {
+        bindings.push_back({.binding = binding,
+                            .descriptorType = type,
+                            .descriptorCount = count,
+                            .stageFlags = VK_SHADER_STAGE_COMPUTE_BIT});
+    };
     add(gpu::kSceneInfoBinding, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1);
     for (uint32_t b = gpu::kBvhNodesBinding; b <= gpu::kLightsBinding; ++b)
         add(b, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, 1);
@@ -135,7 +146,7 @@ void Device::loadPipelineCache()
     if (const auto folder = cacheFolder())
     {
         pipeline_cache_path_ = *folder / fmt::format("pipelines-{:04x}-{:04x}-{:08x}.bin", properties_.vendorID,
-                                                    properties_.deviceID, properties_.driverVersion);
+                                                     properties_.deviceID, properties_.driverVersion);
         std::ifstream file(pipeline_cache_path_, std::ios::binary);
         data.assign(std::istreambuf_iterator<char>(file), {});
     }
@@ -171,7 +182,8 @@ Kernel::State::~State()
 std::vector<Device::ConstantValue> Device::constantValues(const KernelCode& code, const SharedConstants& shared,
                                                           std::initializer_list<Constant> constants)
 {
-    const auto find = [](const KernelCode& in, std::string_view name) { return std::ranges::find(in.constants, name, &KernelConstant::name); };
+    const auto find = [](const KernelCode& in, std::string_view name)
+    { return std::ranges::find(in.constants, name, &KernelConstant::name); };
     std::vector<ConstantValue> values;
     for (const Constant& constant : constants)
     {
@@ -185,15 +197,18 @@ std::vector<Device::ConstantValue> Device::constantValues(const KernelCode& code
         if (found != code.constants.end())
             values.emplace_back(found->id, constant.value);
         else
-            check(std::ranges::any_of(kernelCodes(), [&](const KernelCode& other) { return find(other, constant.name) != other.constants.end(); }),
+            check(std::ranges::any_of(kernelCodes(), [&](const KernelCode& other)
+                                      { return find(other, constant.name) != other.constants.end(); }),
                   "no kernel uses a specialization constant '{}'", constant.name);
     }
     std::ranges::sort(values);
-    check(std::ranges::adjacent_find(values, {}, &ConstantValue::first) == values.end(), "{}: a specialization constant is given twice", code.name);
+    check(std::ranges::adjacent_find(values, {}, &ConstantValue::first) == values.end(),
+          "{}: a specialization constant is given twice", code.name);
     return values;
 }
 
-Kernel Device::kernel(std::string_view name, const SharedConstants& shared, std::initializer_list<Constant> constants) const
+Kernel Device::kernel(std::string_view name, const SharedConstants& shared,
+                      std::initializer_list<Constant> constants) const
 {
     const auto codes = kernelCodes();
     const auto code = std::ranges::find(codes, name, &KernelCode::name);
@@ -201,7 +216,8 @@ Kernel Device::kernel(std::string_view name, const SharedConstants& shared, std:
     return kernel(*code, shared, constants);
 }
 
-Kernel Device::kernel(const KernelCode& code, const SharedConstants& shared, std::initializer_list<Constant> constants) const
+Kernel Device::kernel(const KernelCode& code, const SharedConstants& shared,
+                      std::initializer_list<Constant> constants) const
 {
     const std::vector<ConstantValue> values = constantValues(code, shared, constants);
     const auto [entry, added] = kernels_.try_emplace({std::string(code.name), values});
@@ -253,7 +269,8 @@ Kernel Device::createKernel(const KernelCode& code, std::span<const ConstantValu
     std::vector<uint32_t> values;
     for (const auto& [id, value] : constants)
     {
-        entries.push_back({.constantID = id, .offset = uint32_t(values.size() * sizeof(uint32_t)), .size = sizeof(uint32_t)});
+        entries.push_back(
+            {.constantID = id, .offset = uint32_t(values.size() * sizeof(uint32_t)), .size = sizeof(uint32_t)});
         values.push_back(value);
     }
     const VkSpecializationInfo specialization{.mapEntryCount = uint32_t(entries.size()),
@@ -281,7 +298,8 @@ Kernel Device::createKernel(const KernelCode& code, std::span<const ConstantValu
 VkDeviceMemory Device::allocate(const VkMemoryRequirements& needs, Placement placement, bool& host_visible) const
 {
     constexpr VkMemoryPropertyFlags kLocal = VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT;
-    constexpr VkMemoryPropertyFlags kVisible = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
+    constexpr VkMemoryPropertyFlags kVisible =
+        VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
     constexpr VkMemoryPropertyFlags kCached = VK_MEMORY_PROPERTY_HOST_CACHED_BIT;
     // First choice, then what also works.
     const std::array<VkMemoryPropertyFlags, 2> wishes =
@@ -321,7 +339,8 @@ void Device::submitOnce(Record&& record) const
     vulkanCheck(vkBeginCommandBuffer(commands, &begin));
     record(commands);
     vulkanCheck(vkEndCommandBuffer(commands));
-    const VkSubmitInfo submit{.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO, .commandBufferCount = 1, .pCommandBuffers = &commands};
+    const VkSubmitInfo submit{
+        .sType = VK_STRUCTURE_TYPE_SUBMIT_INFO, .commandBufferCount = 1, .pCommandBuffers = &commands};
     vulkanCheck(vkQueueSubmit(queue_, 1, &submit, VK_NULL_HANDLE));
     vulkanCheck(vkQueueWaitIdle(queue_));
     vkFreeCommandBuffers(device_, once_pool_, 1, &commands);
@@ -336,7 +355,8 @@ Buffer Device::buffer(std::string_view name, uint64_t bytes, Placement placement
     const VkBufferCreateInfo info{
         .sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
         .size = bytes,
-        .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT |
+        .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT |
+                 VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT |
                  VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
     };
     vulkanCheck(vkCreateBuffer(device_, &info, nullptr, &buffer.buffer_));
@@ -354,7 +374,8 @@ Buffer Device::buffer(std::string_view name, uint64_t bytes, Placement placement
     }
     nameObject(VK_OBJECT_TYPE_BUFFER, uint64_t(buffer.buffer_), name);
     if (instance_.validates() && placement == Placement::kDevice)
-        submitOnce([&](VkCommandBuffer commands) { vkCmdFillBuffer(commands, buffer.handle(), 0, VK_WHOLE_SIZE, kUnwritten); });
+        submitOnce([&](VkCommandBuffer commands)
+                   { vkCmdFillBuffer(commands, buffer.handle(), 0, VK_WHOLE_SIZE, kUnwritten); });
     return buffer;
 }
 
@@ -394,7 +415,8 @@ Buffer Device::uploadBytes(std::string_view name, std::span<const std::byte> dat
         const VkBufferCopy copy{.dstOffset = begin, .size = std::min(data.size() - begin, kStagingBytes)};
         const Buffer& from = staging(copy.size);
         std::memcpy(from.mapped().data(), data.data() + begin, copy.size);
-        submitOnce([&](VkCommandBuffer commands) { vkCmdCopyBuffer(commands, from.handle(), target.handle(), 1, &copy); });
+        submitOnce([&](VkCommandBuffer commands)
+                   { vkCmdCopyBuffer(commands, from.handle(), target.handle(), 1, &copy); });
     }
     return target;
 }
@@ -403,21 +425,22 @@ void Device::downloadBytes(const Buffer& source, std::span<std::byte> data) cons
 {
     check(data.size() <= source.size(), "{}: {} bytes asked of {}", source.name(), data.size(), source.size());
     const Buffer staging = readback("download", std::max<size_t>(data.size(), 1));
-    submitOnce([&](VkCommandBuffer commands)
-    {
-        const VkMemoryBarrier before{.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER,
-                                     .srcAccessMask = VK_ACCESS_MEMORY_WRITE_BIT,
-                                     .dstAccessMask = VK_ACCESS_TRANSFER_READ_BIT};
-        vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT, 0, 1, &before, 0,
-                             nullptr, 0, nullptr);
-        const VkBufferCopy copy{.size = data.size()};
-        vkCmdCopyBuffer(commands, source.handle(), staging.handle(), 1, &copy);
-        const VkMemoryBarrier after{.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER,
-                                    .srcAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT,
-                                    .dstAccessMask = VK_ACCESS_HOST_READ_BIT};
-        vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_PIPELINE_STAGE_HOST_BIT, 0, 1, &after, 0, nullptr, 0,
-                             nullptr);
-    });
+    submitOnce(
+        [&](VkCommandBuffer commands)
+        {
+            const VkMemoryBarrier before{.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER,
+                                         .srcAccessMask = VK_ACCESS_MEMORY_WRITE_BIT,
+                                         .dstAccessMask = VK_ACCESS_TRANSFER_READ_BIT};
+            vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT, 0, 1,
+                                 &before, 0, nullptr, 0, nullptr);
+            const VkBufferCopy copy{.size = data.size()};
+            vkCmdCopyBuffer(commands, source.handle(), staging.handle(), 1, &copy);
+            const VkMemoryBarrier after{.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER,
+                                        .srcAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT,
+                                        .dstAccessMask = VK_ACCESS_HOST_READ_BIT};
+            vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_PIPELINE_STAGE_HOST_BIT, 0, 1, &after, 0,
+                                 nullptr, 0, nullptr);
+        });
     std::memcpy(data.data(), staging.mapped().data(), data.size());
 }
 
@@ -447,12 +470,16 @@ uint64_t levelBytes(VkFormat format, uint32_t width, uint32_t height)
 {
     switch (format)
     {
-    case VK_FORMAT_BC4_UNORM_BLOCK: return 8 * blocks::countIn(width, height);
+    case VK_FORMAT_BC4_UNORM_BLOCK:
+        return 8 * blocks::countIn(width, height);
     case VK_FORMAT_BC5_UNORM_BLOCK:
     case VK_FORMAT_BC7_UNORM_BLOCK:
-    case VK_FORMAT_BC7_SRGB_BLOCK: return 16 * blocks::countIn(width, height);
-    case VK_FORMAT_R32G32B32A32_SFLOAT: return uint64_t(16) * width * height;
-    default: return uint64_t(4) * width * height;
+    case VK_FORMAT_BC7_SRGB_BLOCK:
+        return 16 * blocks::countIn(width, height);
+    case VK_FORMAT_R32G32B32A32_SFLOAT:
+        return uint64_t(16) * width * height;
+    default:
+        return uint64_t(4) * width * height;
     }
 }
 } // namespace
@@ -470,7 +497,8 @@ Image Device::uploadImage(std::string_view name, const ImageShape& shape, std::s
         .arrayLayers = shape.layers,
         .samples = VK_SAMPLE_COUNT_1_BIT,
         .tiling = VK_IMAGE_TILING_OPTIMAL,
-        .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT, // tests read back
+        .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT |
+                 VK_IMAGE_USAGE_TRANSFER_SRC_BIT, // tests read back
     };
     vulkanCheck(vkCreateImage(device_, &info, nullptr, &image.image_));
     VkMemoryRequirements needs;
@@ -487,18 +515,21 @@ Image Device::uploadImage(std::string_view name, const ImageShape& shape, std::s
         check(offset + bytes <= data.size(), "image '{}' needs more than {} bytes", name, data.size());
         const Buffer& from = staging(bytes);
         std::memcpy(from.mapped().data(), data.data() + offset, bytes);
-        submitOnce([&](VkCommandBuffer commands)
-        {
-            if (offset == 0)
-                transition(commands, image.image_, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 0,
-                           VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_2_NONE, VK_PIPELINE_STAGE_2_TRANSFER_BIT);
-            vkCmdCopyBufferToImage(commands, from.handle(), image.image_, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
-                                   uint32_t(copies.size()), copies.data());
-            if (last)
-                transition(commands, image.image_, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
-                           VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_ACCESS_2_SHADER_READ_BIT, VK_PIPELINE_STAGE_2_TRANSFER_BIT,
-                           VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT);
-        });
+        submitOnce(
+            [&](VkCommandBuffer commands)
+            {
+                if (offset == 0)
+                    transition(commands, image.image_, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                               0, VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_2_NONE,
+                               VK_PIPELINE_STAGE_2_TRANSFER_BIT);
+                vkCmdCopyBufferToImage(commands, from.handle(), image.image_, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                                       uint32_t(copies.size()), copies.data());
+                if (last)
+                    transition(commands, image.image_, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                               VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, VK_ACCESS_2_TRANSFER_WRITE_BIT,
+                               VK_ACCESS_2_SHADER_READ_BIT, VK_PIPELINE_STAGE_2_TRANSFER_BIT,
+                               VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT);
+            });
         offset += bytes;
     };
     std::vector<VkBufferImageCopy> copies; // what still fits into one go

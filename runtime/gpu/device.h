@@ -26,11 +26,16 @@ public:
     /// "samples/assign" is shaders/samples/assign.comp. Aborts where there is no such kernel.
     /// Kernels are cached: the same name and constants give the same one.
     /// @param constants of the kernel; others keep the value in the shader. Aborts where the kernel does not use one of them.
-    Kernel kernel(std::string_view name, std::initializer_list<Constant> constants = {}) const { return kernel(name, SharedConstants(), constants); }
+    Kernel kernel(std::string_view name, std::initializer_list<Constant> constants = {}) const
+    {
+        return kernel(name, SharedConstants(), constants);
+    }
     /// @param shared of which the kernel takes those it uses. Aborts where no kernel at all uses one of them.
-    Kernel kernel(std::string_view name, const SharedConstants& shared, std::initializer_list<Constant> constants = {}) const;
+    Kernel kernel(std::string_view name, const SharedConstants& shared,
+                  std::initializer_list<Constant> constants = {}) const;
     /// The same of a kernel that is not one of kernelCodes(); of another name than any of them.
-    Kernel kernel(const KernelCode& code, const SharedConstants& shared, std::initializer_list<Constant> constants = {}) const;
+    Kernel kernel(const KernelCode& code, const SharedConstants& shared,
+                  std::initializer_list<Constant> constants = {}) const;
 
     /// What a word of new memory holds under validation: no number as a float, far too many as a count. Without this
     /// a kernel that reads what nothing wrote is right as long as the memory happens to be zero.
@@ -99,7 +104,12 @@ public:
     void nameObject(VkObjectType type, uint64_t handle, std::string_view name) const;
 
 private:
-    enum class Placement { kDevice, kReadback, kStaging };
+    enum class Placement
+    {
+        kDevice,
+        kReadback,
+        kStaging
+    };
     Device() = default;
     void createLayouts();
     void loadPipelineCache();

@@ -9,29 +9,43 @@ const char* vulkanResultName(VkResult result)
 {
     switch (result)
     {
-    case VK_SUCCESS: return "VK_SUCCESS";
-    case VK_ERROR_OUT_OF_HOST_MEMORY: return "VK_ERROR_OUT_OF_HOST_MEMORY";
-    case VK_ERROR_OUT_OF_DEVICE_MEMORY: return "VK_ERROR_OUT_OF_DEVICE_MEMORY";
-    case VK_ERROR_INITIALIZATION_FAILED: return "VK_ERROR_INITIALIZATION_FAILED";
-    case VK_ERROR_DEVICE_LOST: return "VK_ERROR_DEVICE_LOST";
-    case VK_ERROR_LAYER_NOT_PRESENT: return "VK_ERROR_LAYER_NOT_PRESENT";
-    case VK_ERROR_EXTENSION_NOT_PRESENT: return "VK_ERROR_EXTENSION_NOT_PRESENT";
-    case VK_ERROR_FEATURE_NOT_PRESENT: return "VK_ERROR_FEATURE_NOT_PRESENT";
-    case VK_ERROR_INCOMPATIBLE_DRIVER: return "VK_ERROR_INCOMPATIBLE_DRIVER";
-    case VK_ERROR_SURFACE_LOST_KHR: return "VK_ERROR_SURFACE_LOST_KHR";
-    case VK_ERROR_OUT_OF_DATE_KHR: return "VK_ERROR_OUT_OF_DATE_KHR";
-    default: return "another Vulkan error";
+    case VK_SUCCESS:
+        return "VK_SUCCESS";
+    case VK_ERROR_OUT_OF_HOST_MEMORY:
+        return "VK_ERROR_OUT_OF_HOST_MEMORY";
+    case VK_ERROR_OUT_OF_DEVICE_MEMORY:
+        return "VK_ERROR_OUT_OF_DEVICE_MEMORY";
+    case VK_ERROR_INITIALIZATION_FAILED:
+        return "VK_ERROR_INITIALIZATION_FAILED";
+    case VK_ERROR_DEVICE_LOST:
+        return "VK_ERROR_DEVICE_LOST";
+    case VK_ERROR_LAYER_NOT_PRESENT:
+        return "VK_ERROR_LAYER_NOT_PRESENT";
+    case VK_ERROR_EXTENSION_NOT_PRESENT:
+        return "VK_ERROR_EXTENSION_NOT_PRESENT";
+    case VK_ERROR_FEATURE_NOT_PRESENT:
+        return "VK_ERROR_FEATURE_NOT_PRESENT";
+    case VK_ERROR_INCOMPATIBLE_DRIVER:
+        return "VK_ERROR_INCOMPATIBLE_DRIVER";
+    case VK_ERROR_SURFACE_LOST_KHR:
+        return "VK_ERROR_SURFACE_LOST_KHR";
+    case VK_ERROR_OUT_OF_DATE_KHR:
+        return "VK_ERROR_OUT_OF_DATE_KHR";
+    default:
+        return "another Vulkan error";
     }
 }
 
 namespace
 {
-VKAPI_ATTR VkBool32 VKAPI_CALL onMessage(VkDebugUtilsMessageSeverityFlagBitsEXT severity, VkDebugUtilsMessageTypeFlagsEXT,
+VKAPI_ATTR VkBool32 VKAPI_CALL onMessage(VkDebugUtilsMessageSeverityFlagBitsEXT severity,
+                                         VkDebugUtilsMessageTypeFlagsEXT,
                                          const VkDebugUtilsMessengerCallbackDataEXT* data, void*)
 {
     fmt::print(stderr, "validation: {}\n", data->pMessage);
     // Warnings of the layer point at bugs as surely as its errors do; both stop the program.
-    check(severity < VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT, "{}", data->pMessageIdName ? data->pMessageIdName : "");
+    check(severity < VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT, "{}",
+          data->pMessageIdName ? data->pMessageIdName : "");
     return VK_FALSE;
 }
 
@@ -48,11 +62,16 @@ const char* kindName(VkPhysicalDeviceType type)
 {
     switch (type)
     {
-    case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU: return "discrete";
-    case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU: return "integrated";
-    case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU: return "virtual";
-    case VK_PHYSICAL_DEVICE_TYPE_CPU: return "cpu";
-    default: return "other";
+    case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU:
+        return "discrete";
+    case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU:
+        return "integrated";
+    case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU:
+        return "virtual";
+    case VK_PHYSICAL_DEVICE_TYPE_CPU:
+        return "cpu";
+    default:
+        return "other";
     }
 }
 
@@ -71,7 +90,8 @@ std::vector<std::string> missingFeatures(VkPhysicalDevice device, const VkPhysic
     if (properties.apiVersion < VK_API_VERSION_1_3)
     {
         lacks.push_back(fmt::format("Vulkan 1.3 (it offers {}.{}): a newer driver is needed",
-                                    VK_API_VERSION_MAJOR(properties.apiVersion), VK_API_VERSION_MINOR(properties.apiVersion)));
+                                    VK_API_VERSION_MAJOR(properties.apiVersion),
+                                    VK_API_VERSION_MINOR(properties.apiVersion)));
         return lacks; // the structures below are 1.3's
     }
     VkPhysicalDeviceVulkan13Features f13{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES};
@@ -88,8 +108,10 @@ std::vector<std::string> missingFeatures(VkPhysicalDevice device, const VkPhysic
     need(f13.maintenance4, "maintenance4: workgroup sizes given by constants");
     need(hasExtension(device, VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME), "VK_KHR_push_descriptor: every kernel's buffers");
     need(properties.limits.maxPushConstantsSize >= 128, "128 bytes of push constants: kernel parameters");
-    need(properties.limits.maxPerStageDescriptorStorageBuffers >= 20, "20 storage buffers a stage: scene and stage buffers");
-    need(properties.limits.maxPerStageDescriptorSampledImages >= 23, "23 sampled images a stage: texture pages, scene data");
+    need(properties.limits.maxPerStageDescriptorStorageBuffers >= 20,
+         "20 storage buffers a stage: scene and stage buffers");
+    need(properties.limits.maxPerStageDescriptorSampledImages >= 23,
+         "23 sampled images a stage: texture pages, scene data");
     need(properties.limits.maxComputeWorkGroupInvocations >= 256, "workgroups of 256 invocations");
     return lacks;
 }
@@ -118,7 +140,8 @@ std::string describe(std::span<const DeviceInfo> devices)
 Instance::State::~State()
 {
     if (messenger)
-        if (auto destroy = PFN_vkDestroyDebugUtilsMessengerEXT(vkGetInstanceProcAddr(instance, "vkDestroyDebugUtilsMessengerEXT")))
+        if (auto destroy =
+                PFN_vkDestroyDebugUtilsMessengerEXT(vkGetInstanceProcAddr(instance, "vkDestroyDebugUtilsMessengerEXT")))
             destroy(instance, messenger, nullptr);
     if (instance)
         vkDestroyInstance(instance, nullptr);
@@ -128,12 +151,14 @@ Result<Instance> Instance::create(const InstanceOptions& options)
 {
     constexpr const char* kValidation = "VK_LAYER_KHRONOS_validation";
     if (options.validation && !hasLayer(kValidation))
-        return Error{ExitCode::kDevice, "the Vulkan validation layer is not installed (Debian: vulkan-validationlayers)"};
+        return Error{ExitCode::kDevice,
+                     "the Vulkan validation layer is not installed (Debian: vulkan-validationlayers)"};
 
     std::vector<const char*> extensions(options.extensions.begin(), options.extensions.end());
     const VkDebugUtilsMessengerCreateInfoEXT messenger{
         .sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT,
-        .messageSeverity = VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT,
+        .messageSeverity =
+            VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT,
         .messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_TYPE_PERFORMANCE_BIT_EXT,
         .pfnUserCallback = onMessage,
     };
@@ -145,7 +170,8 @@ Result<Instance> Instance::create(const InstanceOptions& options)
         .pEnabledValidationFeatures = kChecks.data(),
     };
     if (options.validation)
-        extensions.insert(extensions.end(), {VK_EXT_DEBUG_UTILS_EXTENSION_NAME, VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME});
+        extensions.insert(extensions.end(),
+                          {VK_EXT_DEBUG_UTILS_EXTENSION_NAME, VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME});
 
     const VkApplicationInfo app{
         .sType = VK_STRUCTURE_TYPE_APPLICATION_INFO, .pApplicationName = "lumicut", .apiVersion = VK_API_VERSION_1_3};
@@ -162,10 +188,12 @@ Result<Instance> Instance::create(const InstanceOptions& options)
     instance.state_ = std::make_shared<State>();
     if (const VkResult result = vkCreateInstance(&info, nullptr, &instance.state_->instance); result != VK_SUCCESS)
         return Error{ExitCode::kDevice, fmt::format("Vulkan cannot be started ({}); is a Vulkan driver installed "
-                                                    "(Debian: mesa-vulkan-drivers)?", vulkanResultName(result))};
+                                                    "(Debian: mesa-vulkan-drivers)?",
+                                                    vulkanResultName(result))};
     const VkInstance handle = instance.state_->instance;
     if (options.validation)
-        if (auto create = PFN_vkCreateDebugUtilsMessengerEXT(vkGetInstanceProcAddr(handle, "vkCreateDebugUtilsMessengerEXT")))
+        if (auto create =
+                PFN_vkCreateDebugUtilsMessengerEXT(vkGetInstanceProcAddr(handle, "vkCreateDebugUtilsMessengerEXT")))
             vulkanCheck(create(handle, &messenger, nullptr, &instance.state_->messenger));
 
     uint32_t count = 0;
@@ -181,7 +209,8 @@ std::vector<DeviceInfo> Instance::devices() const
     for (uint32_t i = 0; i < state_->devices.size(); ++i)
     {
         VkPhysicalDeviceDriverProperties driver{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES};
-        VkPhysicalDeviceProperties2 properties{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, .pNext = &driver};
+        VkPhysicalDeviceProperties2 properties{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2,
+                                               .pNext = &driver};
         vkGetPhysicalDeviceProperties2(state_->devices[i], &properties);
         VkPhysicalDeviceMemoryProperties memory;
         vkGetPhysicalDeviceMemoryProperties(state_->devices[i], &memory);

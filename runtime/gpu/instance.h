@@ -22,7 +22,7 @@ struct DeviceInfo
     std::string name;
     std::string kind; // "discrete", "integrated", "cpu", "virtual", "other"
     std::string driver;
-    uint64_t memory_bytes = 0;     // largest device-local heap
+    uint64_t memory_bytes = 0;      // largest device-local heap
     std::vector<std::string> lacks; // each required feature that is missing, with its reason; empty: suitable
 };
 

@@ -15,7 +15,11 @@ class Buffer
 public:
     Buffer() = default;
     Buffer(Buffer&& other) noexcept { swap(other); }
-    Buffer& operator=(Buffer&& other) noexcept { swap(other); return *this; }
+    Buffer& operator=(Buffer&& other) noexcept
+    {
+        swap(other);
+        return *this;
+    }
     ~Buffer();
 
     uint64_t size() const { return size_; } // bytes
@@ -45,7 +49,11 @@ class Image
 public:
     Image() = default;
     Image(Image&& other) noexcept { swap(other); }
-    Image& operator=(Image&& other) noexcept { swap(other); return *this; }
+    Image& operator=(Image&& other) noexcept
+    {
+        swap(other);
+        return *this;
+    }
     ~Image();
 
     VkImageView view() const { return view_; }
@@ -63,7 +71,7 @@ private:
 struct ImageShape
 {
     VkFormat format = VK_FORMAT_R8G8B8A8_UNORM;
-    uint32_t width = 1;  // texels
+    uint32_t width = 1; // texels
     uint32_t height = 1;
     uint32_t layers = 1;
     uint32_t levels = 1;

@@ -26,7 +26,8 @@ Recorder::Recorder(const Device& device) : device_(device)
                                         .queryType = VK_QUERY_TYPE_TIMESTAMP,
                                         .queryCount = kMaxTimestamps};
     vulkanCheck(vkCreateQueryPool(device.handle(), &queries, nullptr, &queries_));
-    push_descriptors_ = PFN_vkCmdPushDescriptorSetKHR(vkGetDeviceProcAddr(device.handle(), "vkCmdPushDescriptorSetKHR"));
+    push_descriptors_ =
+        PFN_vkCmdPushDescriptorSetKHR(vkGetDeviceProcAddr(device.handle(), "vkCmdPushDescriptorSetKHR"));
 }
 
 Recorder::~Recorder()
@@ -77,8 +78,8 @@ void Recorder::endScope()
 
 void Recorder::barrier()
 {
-    constexpr VkPipelineStageFlags2 kStages =
-        VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_2_TRANSFER_BIT | VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT;
+    constexpr VkPipelineStageFlags2 kStages = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT |
+                                              VK_PIPELINE_STAGE_2_TRANSFER_BIT | VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT;
     const VkMemoryBarrier2 memory{
         .sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
         .srcStageMask = kStages,
@@ -108,8 +109,8 @@ void Recorder::note(const Buffer& buffer, bool reads, bool writes)
         written_.insert(buffer.handle());
 }
 
-void Recorder::prepare(const Kernel& kernel, const void* params, size_t param_bytes, std::initializer_list<Binding> bindings,
-                       const Buffer* arguments)
+void Recorder::prepare(const Kernel& kernel, const void* params, size_t param_bytes,
+                       std::initializer_list<Binding> bindings, const Buffer* arguments)
 {
     const KernelCode& code = kernel.code();
     check(param_bytes == code.push_bytes, "{}: {} bytes of parameters given, the kernel has {}", code.name, param_bytes,
@@ -121,8 +122,8 @@ void Recorder::prepare(const Kernel& kernel, const void* params, size_t param_by
             names += fmt::format(" {}", block.name);
         return names;
     };
-    check(bindings.size() == code.blocks.size(), "{}: {} buffers given, the kernel's blocks are{}", code.name, bindings.size(),
-          list());
+    check(bindings.size() == code.blocks.size(), "{}: {} buffers given, the kernel's blocks are{}", code.name,
+          bindings.size(), list());
 
     std::array<VkDescriptorBufferInfo, 32> infos;
     std::array<VkWriteDescriptorSet, 32> writes;
@@ -130,16 +131,16 @@ void Recorder::prepare(const Kernel& kernel, const void* params, size_t param_by
     bool hazard = arguments && conflicts(*arguments, false);
     for (const uint32_t binding : code.scene_bindings)
     {
-        check(binding < scene_.buffers.size(), "{}: it reads binding {} of the scene, of {} given to begin()", code.name, binding,
-              scene_.buffers.size());
+        check(binding < scene_.buffers.size(), "{}: it reads binding {} of the scene, of {} given to begin()",
+              code.name, binding, scene_.buffers.size());
         hazard |= conflicts(*scene_.buffers[binding], false);
     }
     for (const Binding& binding : bindings)
     {
         const auto block = std::ranges::find(code.blocks, binding.block, &KernelBlock::name);
         check(block != code.blocks.end(), "{}: no block '{}'; its blocks are{}", code.name, binding.block, list());
-        check(std::ranges::count(bindings, binding.block, &Binding::block) == 1, "{}: block '{}' is given twice; its blocks are{}",
-              code.name, binding.block, list());
+        check(std::ranges::count(bindings, binding.block, &Binding::block) == 1,
+              "{}: block '{}' is given twice; its blocks are{}", code.name, binding.block, list());
         hazard |= conflicts(binding.buffer, block->writes);
         check(!block->texels || binding.buffer.texels(),
               "{}: '{}' is read as texels, but buffer '{}' has no texel view", code.name, binding.block,
@@ -168,7 +169,8 @@ void Recorder::prepare(const Kernel& kernel, const void* params, size_t param_by
 
     vkCmdBindPipeline(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.pipeline());
     if (scene_.set)
-        vkCmdBindDescriptorSets(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.layout(), 0, 1, &scene_.set, 0, nullptr);
+        vkCmdBindDescriptorSets(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.layout(), 0, 1, &scene_.set, 0,
+                                nullptr);
     if (count > 0)
         push_descriptors_(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.layout(), 1, count, writes.data());
     if (param_bytes > 0)
@@ -186,11 +188,13 @@ void Recorder::dispatch(const Kernel& kernel, uint32_t thread_count)
 void Recorder::dispatchIndirect(const Kernel& kernel, const Buffer& size)
 {
     const KernelCode& code = kernel.code();
-    check(size.size() >= sizeof(gpu::QueueSize), "{}: buffer '{}' of {} bytes is no QueueSize", code.name, size.name(), size.size());
+    check(size.size() >= sizeof(gpu::QueueSize), "{}: buffer '{}' of {} bytes is no QueueSize", code.name, size.name(),
+          size.size());
     uint32_t row = 0;
     while (row < gpu::kQueueRows && gpu::queueGroupSize(row) != code.group_size)
         ++row;
-    check(row < gpu::kQueueRows, "{}: a QueueSize has no dispatch for groups of {} threads", code.name, code.group_size);
+    check(row < gpu::kQueueRows, "{}: a QueueSize has no dispatch for groups of {} threads", code.name,
+          code.group_size);
     vkCmdDispatchIndirect(commands_, size.handle(), offsetof(gpu::QueueSize, groups) + row * sizeof(gpu::uvec3));
 }
 
@@ -214,8 +218,8 @@ void Recorder::copy(const Buffer& from, const Buffer& to, uint64_t bytes, uint64
 
 void Recorder::write(const Buffer& to, uint64_t offset, std::span<const std::byte> bytes)
 {
-    check(bytes.size() % 4 == 0 && bytes.size() <= 65536 && offset + bytes.size() <= to.size(), "{} bytes at {} of {} of {} bytes",
-          bytes.size(), offset, to.name(), to.size());
+    check(bytes.size() % 4 == 0 && bytes.size() <= 65536 && offset + bytes.size() <= to.size(),
+          "{} bytes at {} of {} of {} bytes", bytes.size(), offset, to.name(), to.size());
     if (conflicts(to, true))
         barrier();
     note(to, false, true);
@@ -256,8 +260,9 @@ std::vector<StageTime> Recorder::wait()
     vulkanCheck(vkWaitForFences(device_.handle(), 1, &fence_, VK_TRUE, UINT64_MAX));
     std::vector<uint64_t> ticks(query_count_);
     if (query_count_ > 0)
-        vulkanCheck(vkGetQueryPoolResults(device_.handle(), queries_, 0, query_count_, ticks.size() * sizeof(uint64_t), ticks.data(),
-                                          sizeof(uint64_t), VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT));
+        vulkanCheck(vkGetQueryPoolResults(device_.handle(), queries_, 0, query_count_, ticks.size() * sizeof(uint64_t),
+                                          ticks.data(), sizeof(uint64_t),
+                                          VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT));
     std::vector<StageTime> times;
     for (const ScopeRecord& record : scopes_)
     {

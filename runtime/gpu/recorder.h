@@ -29,7 +29,9 @@ struct StageTime
 };
 
 /// For kernels without push constants.
-struct NoParams {};
+struct NoParams
+{
+};
 
 class Recorder
 {
@@ -55,7 +57,10 @@ public:
     void begin(const SceneSet& scene = {});
     [[nodiscard]] Scope scope(std::string_view name);
     /// The innermost scope that is open, "" outside of any.
-    std::string_view scopeName() const { return open_scopes_.empty() ? std::string_view() : scopes_[open_scopes_.back()].name; }
+    std::string_view scopeName() const
+    {
+        return open_scopes_.empty() ? std::string_view() : scopes_[open_scopes_.back()].name;
+    }
 
     void clear(const Buffer& buffer) { fill(buffer, 0); }
     void fill(const Buffer& buffer, uint32_t word);
@@ -74,7 +79,8 @@ public:
 
     /// The same with at least size.count threads. @param size gpu::QueueSize, which has groups of the kernel's size or aborts
     template <typename Params>
-    void runIndirect(const Kernel& kernel, const Buffer& size, const Params& params, std::initializer_list<Binding> bindings)
+    void runIndirect(const Kernel& kernel, const Buffer& size, const Params& params,
+                     std::initializer_list<Binding> bindings)
     {
         prepare(kernel, &params, paramBytes<Params>(), bindings, &size);
         dispatchIndirect(kernel, size);
@@ -94,7 +100,10 @@ public:
 
 private:
     template <typename Params>
-    static constexpr size_t paramBytes() { return std::is_empty_v<Params> ? 0 : sizeof(Params); }
+    static constexpr size_t paramBytes()
+    {
+        return std::is_empty_v<Params> ? 0 : sizeof(Params);
+    }
     void prepare(const Kernel& kernel, const void* params, size_t param_bytes, std::initializer_list<Binding> bindings,
                  const Buffer* arguments);
     void dispatch(const Kernel& kernel, uint32_t thread_count);

@@ -1,8 +1,8 @@
 #include "runtime/gpu/swapchain.h"
 
 #include <algorithm>
-#include <optional>
 #include <array>
+#include <optional>
 
 namespace
 {
@@ -40,7 +40,8 @@ VkCompositeAlphaFlagBitsKHR compositeAlpha(const VkSurfaceCapabilitiesKHR& caps)
 {
     if (caps.supportedCompositeAlpha & VK_COMPOSITE_ALPHA_OPAQUE_BIT_KHR)
         return VK_COMPOSITE_ALPHA_OPAQUE_BIT_KHR;
-    return VkCompositeAlphaFlagBitsKHR(caps.supportedCompositeAlpha & (~caps.supportedCompositeAlpha + 1)); // any: the lowest
+    return VkCompositeAlphaFlagBitsKHR(caps.supportedCompositeAlpha &
+                                       (~caps.supportedCompositeAlpha + 1)); // any: the lowest
 }
 
 VkSemaphore semaphore(const Device& device)
@@ -67,7 +68,8 @@ Swapchain::Swapchain(const Instance& instance, const Device& device, VkSurfaceKH
 {
 }
 
-Result<std::unique_ptr<Swapchain>> Swapchain::create(const Instance& instance, const Device& device, VkSurfaceKHR surface)
+Result<std::unique_ptr<Swapchain>> Swapchain::create(const Instance& instance, const Device& device,
+                                                     VkSurfaceKHR surface)
 {
     std::unique_ptr<Swapchain> swapchain(new Swapchain(instance, device, surface));
     if (const Status status = swapchain->choose(); !status)
@@ -104,14 +106,18 @@ Status Swapchain::choose()
         supported = caps && (caps->supportedUsageFlags & kUsage) == kUsage;
     }
     // The pixels are sRGB-encoded already, so the images must not encode again.
-    const auto format = std::ranges::find_if(formats, [](const VkSurfaceFormatKHR& f)
-    {
-        return (f.format == VK_FORMAT_B8G8R8A8_UNORM || f.format == VK_FORMAT_R8G8B8A8_UNORM) &&
-               f.colorSpace == VK_COLOR_SPACE_SRGB_NONLINEAR_KHR;
-    });
+    const auto format = std::ranges::find_if(formats,
+                                             [](const VkSurfaceFormatKHR& f)
+                                             {
+                                                 return (f.format == VK_FORMAT_B8G8R8A8_UNORM ||
+                                                         f.format == VK_FORMAT_R8G8B8A8_UNORM) &&
+                                                        f.colorSpace == VK_COLOR_SPACE_SRGB_NONLINEAR_KHR;
+                                             });
     if (!supported || format == formats.end())
-        return Error{ExitCode::kDevice, fmt::format("{} cannot show pictures on this display; choose another device with --device "
-                                                    "(see --list-devices), or render to a file with --headless", device_.name())};
+        return Error{ExitCode::kDevice,
+                     fmt::format("{} cannot show pictures on this display; choose another device with --device "
+                                 "(see --list-devices), or render to a file with --headless",
+                                 device_.name())};
     format_ = format->format;
     return Success{};
 }
@@ -129,8 +135,9 @@ void Swapchain::createOverlayPass()
         .finalLayout = VK_IMAGE_LAYOUT_PRESENT_SRC_KHR,
     };
     const VkAttachmentReference reference{0, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL};
-    const VkSubpassDescription subpass{
-        .pipelineBindPoint = VK_PIPELINE_BIND_POINT_GRAPHICS, .colorAttachmentCount = 1, .pColorAttachments = &reference};
+    const VkSubpassDescription subpass{.pipelineBindPoint = VK_PIPELINE_BIND_POINT_GRAPHICS,
+                                       .colorAttachmentCount = 1,
+                                       .pColorAttachments = &reference};
     constexpr VkPipelineStageFlags kOutput = VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT;
     const std::array dependencies{
         VkSubpassDependency{.srcSubpass = VK_SUBPASS_EXTERNAL,
@@ -138,7 +145,8 @@ void Swapchain::createOverlayPass()
                             .srcStageMask = VK_PIPELINE_STAGE_TRANSFER_BIT,
                             .dstStageMask = kOutput,
                             .srcAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT,
-                            .dstAccessMask = VK_ACCESS_COLOR_ATTACHMENT_READ_BIT | VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT},
+                            .dstAccessMask =
+                                VK_ACCESS_COLOR_ATTACHMENT_READ_BIT | VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT},
         VkSubpassDependency{.srcSubpass = 0, // the semaphore makes the image visible to presentation
                             .dstSubpass = VK_SUBPASS_EXTERNAL,
                             .srcStageMask = kOutput,
@@ -273,7 +281,8 @@ void Swapchain::beginOverlay(VkCommandBuffer commands, const Buffer& pixels) con
     vkCmdPipelineBarrier2(commands, &dependency);
     const VkBufferImageCopy copy{.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
                                  .imageExtent = {extent_.width, extent_.height, 1}};
-    vkCmdCopyBufferToImage(commands, pixels.handle(), frames_[current_].image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &copy);
+    vkCmdCopyBufferToImage(commands, pixels.handle(), frames_[current_].image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1,
+                           &copy);
     const VkRenderPassBeginInfo begin{.sType = VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO,
                                       .renderPass = overlay_pass_,
                                       .framebuffer = frames_[current_].framebuffer,
@@ -281,7 +290,10 @@ void Swapchain::beginOverlay(VkCommandBuffer commands, const Buffer& pixels) con
     vkCmdBeginRenderPass(commands, &begin, VK_SUBPASS_CONTENTS_INLINE);
 }
 
-void Swapchain::endOverlay(VkCommandBuffer commands) const { vkCmdEndRenderPass(commands); }
+void Swapchain::endOverlay(VkCommandBuffer commands) const
+{
+    vkCmdEndRenderPass(commands);
+}
 
 bool Swapchain::present()
 {

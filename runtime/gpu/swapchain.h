@@ -13,7 +13,8 @@ class Swapchain
 public:
     /// Takes over `surface`, which is destroyed with this object or on failure.
     /// @return kDevice where the device cannot show 8-bit pictures on it
-    static Result<std::unique_ptr<Swapchain>> create(const Instance& instance, const Device& device, VkSurfaceKHR surface);
+    static Result<std::unique_ptr<Swapchain>> create(const Instance& instance, const Device& device,
+                                                     VkSurfaceKHR surface);
     ~Swapchain();
     Swapchain(const Swapchain&) = delete;
     Swapchain& operator=(const Swapchain&) = delete;
@@ -46,7 +47,8 @@ private:
         VkImage image = VK_NULL_HANDLE;
         VkImageView view = VK_NULL_HANDLE;
         VkFramebuffer framebuffer = VK_NULL_HANDLE;
-        VkSemaphore rendered = VK_NULL_HANDLE; // an image's own: only its next acquire says that presenting waited for it
+        VkSemaphore rendered =
+            VK_NULL_HANDLE; // an image's own: only its next acquire says that presenting waited for it
     };
     Swapchain(const Instance& instance, const Device& device, VkSurfaceKHR surface);
     Status choose();

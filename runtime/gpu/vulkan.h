@@ -8,9 +8,9 @@
 const char* vulkanResultName(VkResult result);
 
 /// Aborts unless `call` succeeds: for calls that only fail through a bug of ours or a lost device.
-#define vulkanCheck(call)                                                                                              \
-    do                                                                                                                 \
-    {                                                                                                                  \
-        const VkResult vulkan_result_ = (call);                                                                        \
-        check(vulkan_result_ >= 0, "{}", vulkanResultName(vulkan_result_));                                            \
+#define vulkanCheck(call) \
+    do \
+    { \
+        const VkResult vulkan_result_ = (call); \
+        check(vulkan_result_ >= 0, "{}", vulkanResultName(vulkan_result_)); \
     } while (false)

@@ -11,14 +11,16 @@ constexpr float kMostCounted = 255;
 } // namespace
 
 AntialiasStage::AntialiasStage(const Device& device, uint32_t max_pixels)
-    : blend_(device.kernel("antialias/blend")), stand_(device.kernel("antialias/stand")),
-      shown_{device.array<gpu::vec3>("antialias.shown_a", max_pixels), device.array<gpu::vec3>("antialias.shown_b", max_pixels)},
-      counts_{device.array<float>("antialias.counts_a", max_pixels), device.array<float>("antialias.counts_b", max_pixels)}
+    : blend_(device.kernel("antialias/blend")),
+      stand_(device.kernel("antialias/stand")), shown_{device.array<gpu::vec3>("antialias.shown_a", max_pixels),
+                                                       device.array<gpu::vec3>("antialias.shown_b", max_pixels)},
+      counts_{device.array<float>("antialias.counts_a", max_pixels),
+              device.array<float>("antialias.counts_b", max_pixels)}
 {
 }
 
-void AntialiasStage::recordMoving(Recorder& rec, const Buffer& picture, const Buffer& motions, uint32_t width, uint32_t height,
-                                  uint32_t most_frames, bool continues)
+void AntialiasStage::recordMoving(Recorder& rec, const Buffer& picture, const Buffer& motions, uint32_t width,
+                                  uint32_t height, uint32_t most_frames, bool continues)
 {
     const auto scope = rec.scope("antialias");
     moved_frames_ = continues ? moved_frames_ + 1 : 0;
@@ -40,10 +42,11 @@ void AntialiasStage::recordStanding(Recorder& rec, const Buffer& sum, uint32_t f
     const auto scope = rec.scope("antialias");
     const float after = float(frames - 1), counts = float(std::min(moved_frames_, kBeforeCounts));
     latest_ = 1 - moving_;
-    rec.run(stand_, point_count,
-            gpu::StandParams{.point_count = point_count,
-                             .scale = 1 / float(frames),
-                             .before = counts / (counts + after) * std::max(0.0f, 1 - after / kBeforeLasts),
-                             .most_frames = kMostCounted},
-            {{"Sum", sum}, {"Before", shown_[moving_]}, {"Shown", shown_[latest_]}, {"Counts", counts_[moving_counts_]}});
+    rec.run(
+        stand_, point_count,
+        gpu::StandParams{.point_count = point_count,
+                         .scale = 1 / float(frames),
+                         .before = counts / (counts + after) * std::max(0.0f, 1 - after / kBeforeLasts),
+                         .most_frames = kMostCounted},
+        {{"Sum", sum}, {"Before", shown_[moving_]}, {"Shown", shown_[latest_]}, {"Counts", counts_[moving_counts_]}});
 }

@@ -13,8 +13,8 @@ public:
     /// Of a frame that is the first of its picture.
     /// @param picture vec3[width * height]; @param motions gpu::Motion[width * height], kNoMotion where there is nothing to go on
     /// from; @param continues whether the last frame shown may serve
-    void recordMoving(Recorder& rec, const Buffer& picture, const Buffer& motions, uint32_t width, uint32_t height, uint32_t most_frames,
-                      bool continues);
+    void recordMoving(Recorder& rec, const Buffer& picture, const Buffer& motions, uint32_t width, uint32_t height,
+                      uint32_t most_frames, bool continues);
     /// Of a frame that adds to a static view: its mean, with the picture of the moving camera fading out so that nothing jumps.
     /// @param sum vec3[point_count] of `frames` frames
     void recordStanding(Recorder& rec, const Buffer& sum, uint32_t frames, uint32_t point_count);
@@ -24,8 +24,8 @@ public:
 
 private:
     Kernel blend_, stand_;
-    std::array<Buffer, 2> shown_;  // vec3[max_pixels]
-    std::array<Buffer, 2> counts_; // float[max_pixels]: frames in the mean of shown_
+    std::array<Buffer, 2> shown_;      // vec3[max_pixels]
+    std::array<Buffer, 2> counts_;     // float[max_pixels]: frames in the mean of shown_
     uint32_t moving_ = 0, latest_ = 0; // of shown_: the last moving picture, and what is shown
     uint32_t moving_counts_ = 0;       // of counts_
     uint32_t moved_frames_ = 0;        // that the moving picture is made of

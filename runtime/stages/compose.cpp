@@ -7,11 +7,12 @@ ComposeStage::ComposeStage(const Device& device, uint32_t max_pixels)
 {
 }
 
-const Buffer& ComposeStage::record(Recorder& rec, const LightBuffers& light, const FramePlan& plan, uint32_t pixel_count,
-                                   uint32_t point_count) const
+const Buffer& ComposeStage::record(Recorder& rec, const LightBuffers& light, const FramePlan& plan,
+                                   uint32_t pixel_count, uint32_t point_count) const
 {
     const auto scope = rec.scope("compose");
-    rec.run(sum_, pixel_count, gpu::ComposeParams{.pixel_count = pixel_count, .point_count = point_count, .terms = plan.lightTerms()},
+    rec.run(sum_, pixel_count,
+            gpu::ComposeParams{.pixel_count = pixel_count, .point_count = point_count, .terms = plan.lightTerms()},
             {{"Emission", light.emission},
              {"SharpDirect", light.sharp_direct},
              {"Direct", light.direct},

@@ -9,7 +9,8 @@ public:
     ComposeStage(const Device& device, uint32_t max_pixels);
 
     /// The terms that `plan` shows. @return vec3[pixel_count], W/(m^2 sr)
-    const Buffer& record(Recorder& rec, const LightBuffers& light, const FramePlan& plan, uint32_t pixel_count, uint32_t point_count) const;
+    const Buffer& record(Recorder& rec, const LightBuffers& light, const FramePlan& plan, uint32_t pixel_count,
+                         uint32_t point_count) const;
 
 private:
     Kernel sum_;

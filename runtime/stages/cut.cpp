@@ -4,11 +4,11 @@ CutStage::CutStage(const Device& device, const SceneGpu& scene, uint32_t max_pho
     : reduce_upward_(device.kernel("cut/reduce_upward", {climbConstant(device)})),
       coarse_(device.kernel("cut/coarse", scene.constants(), {climbConstant(device)})),
       select_(device.kernel("cut/select")), refine_(device.kernel("cut/refine")),
-      reorder_(device.kernel("cut/reorder")),
-      build_leaves_(device.kernel("cut/build_leaves")), probe_(device.kernel("cut/probe")),
-      estimate_coverage_(device.kernel("cut/estimate_coverage", scene.constants())), sample_direction_(device.kernel("cut/sample_direction", scene.constants())),
-      compaction_(device, "cut.compaction", 2 * max_photons),
-      tree_(device, "cut.tree", max_photons), sums_(device.array<gpu::PhotonSums>("cut.sums", max_photons)),
+      reorder_(device.kernel("cut/reorder")), build_leaves_(device.kernel("cut/build_leaves")),
+      probe_(device.kernel("cut/probe")), estimate_coverage_(device.kernel("cut/estimate_coverage", scene.constants())),
+      sample_direction_(device.kernel("cut/sample_direction", scene.constants())),
+      compaction_(device, "cut.compaction", 2 * max_photons), tree_(device, "cut.tree", max_photons),
+      sums_(device.array<gpu::PhotonSums>("cut.sums", max_photons)),
       arrivals_(device.array<uint32_t>("cut.arrivals", max_photons)),
       id_count_(device.array<gpu::QueueSize>("cut.id_count", 1)),
       divided_(device.array<uint32_t>("cut.divided", max_photons)),
@@ -144,10 +144,7 @@ void CutStage::recordProbes(Recorder& rec, const RayStage& rays, const Input& in
     const gpu::ProbeParams params{.ray_count = in.probes, .rim_count = in.rim_probes, .seed = in.seed};
     rays.reset(rec, probes_.size); // an empty cut starts no thread that would set it
     rec.runIndirect(probe_, size_, params,
-                    {{"Size", size_},
-                     {"Nodes", nodes_},
-                     {"Queue", probes_.size},
-                     {"Rays", probes_.rays}});
+                    {{"Size", size_}, {"Nodes", nodes_}, {"Queue", probes_.size}, {"Rays", probes_.rays}});
     rays.closest(rec, probes_, hits_, in.seed);
     rec.runIndirect(estimate_coverage_, size_, params,
                     {{"Size", size_}, {"Rays", probes_.rays}, {"Hits", hits_}, {"Nodes", nodes_}});

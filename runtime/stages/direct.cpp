@@ -29,15 +29,15 @@ void DirectStage::record(Recorder& rec, const RayStage& rays, const Input& in) c
 
 void DirectStage::recordSample(Recorder& rec, const RayStage& rays, const Input& in, uint32_t light_sample) const
 {
-    gpu::EmittedParams emitted{
-        .seed = traceSeed(in.seed, in.first_sample * in.light_sample_count + light_sample, ~0u)};
+    gpu::EmittedParams emitted{.seed = traceSeed(in.seed, in.first_sample * in.light_sample_count + light_sample, ~0u)};
     rays.reset(rec, emitter_queue_.size);
     for (const LightGroup& group : lights_.groups)
     {
         const bool last = &group == &lights_.groups.back();
         const uint32_t candidates = group.one_place ? 1 : in.candidate_count;
         if (group.kind != LightKind::kDirectional)
-            (group.kind == LightKind::kEnvironment ? emitted.environment_density : emitted.local_density) = 1 / group.share;
+            (group.kind == LightKind::kEnvironment ? emitted.environment_density : emitted.local_density) =
+                1 / group.share;
         const gpu::DirectParams params{.point_count = in.point_count,
                                        .first_sample = in.first_sample,
                                        .seed = in.seed,

@@ -9,7 +9,8 @@ class ErrorView
 {
 public:
     /// @param reference linear radiance, rows from the top, [width * height], each at least 1
-    ErrorView(const Device& device, std::span<const gpu::vec3> reference, uint32_t width, uint32_t height, uint32_t max_pixels);
+    ErrorView(const Device& device, std::span<const gpu::vec3> reference, uint32_t width, uint32_t height,
+              uint32_t max_pixels);
 
     /// @param sum vec3[width * height] of a picture that may have another size than the reference, which is stretched to it
     void record(Recorder& rec, const Buffer& sum, uint32_t sample_count, uint32_t width, uint32_t height) const;

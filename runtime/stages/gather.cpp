@@ -2,12 +2,12 @@
 
 GatherStage::GatherStage(const Device& device, const SceneGpu& scene, uint32_t max_samples,
                          uint32_t max_rays_per_sample)
-    : max_samples_(max_samples), max_rays_(max_samples * max_rays_per_sample), has_specular_(scene.hasFeature(gpu::kFeatureSpecular)),
-      generate_(device.kernel("gather/generate")),
-      generate_pixels_(device.kernel("gather/generate_pixels", scene.constants())), shade_(device.kernel("gather/shade", scene.constants())),
+    : max_samples_(max_samples), max_rays_(max_samples * max_rays_per_sample),
+      has_specular_(scene.hasFeature(gpu::kFeatureSpecular)), generate_(device.kernel("gather/generate")),
+      generate_pixels_(device.kernel("gather/generate_pixels", scene.constants())),
+      shade_(device.kernel("gather/shade", scene.constants())),
       shade_knn_(device.kernel("gather/shade_knn", scene.constants())), sum_(device.kernel("gather/sum")),
-      add_(device.kernel("gather/add")),
-      project_(device.kernel("gather/project", scene.constants())),
+      add_(device.kernel("gather/add")), project_(device.kernel("gather/project", scene.constants())),
       queue_(device, "gather.queue", max_samples * max_rays_per_sample),
       next_queue_(device, "gather.next_queue", max_samples * max_rays_per_sample),
       hits_(device.texelArray<gpu::Hit>("gather.hits", uint64_t(max_samples) * max_rays_per_sample)),
@@ -15,13 +15,12 @@ GatherStage::GatherStage(const Device& device, const SceneGpu& scene, uint32_t m
       gathered_(device.array<gpu::Gathered>("gather.gathered", uint64_t(max_samples) * max_rays_per_sample)),
       directions_(device.array<uint32_t>("gather.directions", uint64_t(max_samples) * max_rays_per_sample)),
       no_legs_(device.array<gpu::Leg>("gather.no_legs", gpu::kLegCount)),
-      harmonics_(
-          device.texelArray<gpu::SampleHarmonics>("gather.harmonics", scene.reflectsRoughly() ? max_samples : 1))
+      harmonics_(device.texelArray<gpu::SampleHarmonics>("gather.harmonics", scene.reflectsRoughly() ? max_samples : 1))
 {
 }
 
 void GatherStage::traceFirstHits(Recorder& rec, const RayStage& rays, const SamplesStage::Output& samples,
-                       const gpu::GatherParams& params, const LegsStage* legs, GuideStage* guide) const
+                                 const gpu::GatherParams& params, const LegsStage* legs, GuideStage* guide) const
 {
     rec.run(generate_, max_samples_ * gpu::kRaysGroupSize, params,
             {{"Size", samples.size},
@@ -36,8 +35,8 @@ void GatherStage::traceFirstHits(Recorder& rec, const RayStage& rays, const Samp
         guide->splat(rec, queue_, max_samples_ * params.ray_count, hits_);
 }
 
-void GatherStage::traceFirstHits(Recorder& rec, const RayStage& rays, const SamplesStage::Output& samples, const Input& in,
-                       GuideStage& guide) const
+void GatherStage::traceFirstHits(Recorder& rec, const RayStage& rays, const SamplesStage::Output& samples,
+                                 const Input& in, GuideStage& guide) const
 {
     traceFirstHits(rec, rays, samples, gpu::GatherParams{.ray_count = in.ray_count, .seed = in.seed}, nullptr, &guide);
 }
@@ -50,16 +49,12 @@ void GatherStage::record(Recorder& rec, const RayStage& rays, const SamplesStage
     traceFirstHits(rec, rays, samples, params, in.legs, guide);
     follow(rec, rays, map, cut, params);
     rec.run(sum_, max_samples_ * gpu::kRaysGroupSize, params,
-            {{"Size", samples.size},
-             {"GatheredBlock", gathered_},
-             {"Samples", samples.samples}});
+            {{"Size", samples.size}, {"GatheredBlock", gathered_}, {"Samples", samples.samples}});
     if (!in.by_direction)
         return;
-    rec.run(project_, max_samples_ * gpu::kRaysGroupSize, params,
-            {{"Size", samples.size},
-             {"GatheredBlock", gathered_},
-             {"Harmonics", harmonics_},
-             {"Directions", directions_}});
+    rec.run(
+        project_, max_samples_ * gpu::kRaysGroupSize, params,
+        {{"Size", samples.size}, {"GatheredBlock", gathered_}, {"Harmonics", harmonics_}, {"Directions", directions_}});
 }
 
 void GatherStage::recordPixels(Recorder& rec, const RayStage& rays, const PhotonTreeStage::Output& map,

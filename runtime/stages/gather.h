@@ -24,11 +24,11 @@ public:
         float radius;            // of density estimation at most, in CutMode::kKnn: of the distance from the viewer
         uint32_t seed;
         const LegsStage* legs = nullptr; // path segments by which rays are aimed; null: rays are cosine-distributed
-        bool by_direction = false; // whether harmonics() is wanted; only in scenes with rough reflection
+        bool by_direction = false;       // whether harmonics() is wanted; only in scenes with rough reflection
     };
     /// Traces the samples' rays to their first hits, and only splats these into `guide`.
     void traceFirstHits(Recorder& rec, const RayStage& rays, const SamplesStage::Output& samples, const Input& in,
-              GuideStage& guide) const;
+                        GuideStage& guide) const;
     /// Sets irradiance and harmonic_mean_distance of samples.samples. @param guide if not null, the ends of
     /// rays are splatted into it
     void record(Recorder& rec, const RayStage& rays, const SamplesStage::Output& samples,
@@ -44,19 +44,23 @@ public:
         uint32_t seed;  // of the picture
     };
     /// Rays of every pixel that cost as much as those of the samples; at least one, which may cost more.
-    uint32_t raysPerPixel(uint32_t pixel_count) const { return std::clamp(max_rays_ / pixel_count, 1u, kMostPixelRays); }
+    uint32_t raysPerPixel(uint32_t pixel_count) const
+    {
+        return std::clamp(max_rays_ / pixel_count, 1u, kMostPixelRays);
+    }
     /// Whether that is efficient: otherwise a picture needs many passes, as the ray buffers are small.
     bool suitsPixels(uint32_t pixel_count) const { return uint64_t(max_rays_) * kMostPasses >= pixel_count; }
     /// Indirect diffuse light without samples and interpolation: noise, and no blur but that of the cut.
-    void recordPixels(Recorder& rec, const RayStage& rays, const PhotonTreeStage::Output& map, const CutStage::Output& cut,
-                      const Input& in, const PixelInput& pixels, GuideStage* guide = nullptr) const;
+    void recordPixels(Recorder& rec, const RayStage& rays, const PhotonTreeStage::Output& map,
+                      const CutStage::Output& cut, const Input& in, const PixelInput& pixels,
+                      GuideStage* guide = nullptr) const;
 
     /// The light of the samples by direction, as the last record() that was asked for it left it.
     const Buffer& harmonics() const { return harmonics_; } // gpu::SampleHarmonics[samples]
 
 private:
-    void traceFirstHits(Recorder& rec, const RayStage& rays, const SamplesStage::Output& samples, const gpu::GatherParams& params,
-              const LegsStage* legs, GuideStage* guide) const;
+    void traceFirstHits(Recorder& rec, const RayStage& rays, const SamplesStage::Output& samples,
+                        const gpu::GatherParams& params, const LegsStage* legs, GuideStage* guide) const;
 
     static constexpr uint32_t kMostPixelRays = 256, kMostPasses = 8;
 

@@ -20,14 +20,16 @@ public:
         uint32_t first_sample;
         uint32_t specular_depth; // most delta events of a ray
         uint32_t seed;
-        float roulette_threshold; // Russian-roulette threshold: surfaces that reflect less trace a ray from some of their pixels
+        float
+            roulette_threshold; // Russian-roulette threshold: surfaces that reflect less trace a ray from some of their pixels
         bool shared = false; // whether recordHarmonics() has computed a part of the light
     };
     void record(Recorder& rec, const RayStage& rays, const CutStage::Output& cut, const Input& in) const;
 
     /// Adds what rough lobes reflect by the samples' harmonics; record() with in.shared then adds the rest.
     /// @param harmonics gpu::SampleHarmonics, by sample as gathered
-    void recordHarmonics(Recorder& rec, const InterpolateStage::Sorted& samples, const Buffer& harmonics, const Input& in) const;
+    void recordHarmonics(Recorder& rec, const InterpolateStage::Sorted& samples, const Buffer& harmonics,
+                         const Input& in) const;
 
 private:
     Kernel generate_, shade_, harmonics_;

@@ -64,7 +64,8 @@ Moments brdfMoments(double roughness, double cosine)
         const double wx = 2 * facing * hx + sine, wz = 2 * facing * hz - cosine;
         if (wz <= 0)
             continue;
-        const double masking = 2 * wz / (wz + std::sqrt(alpha * alpha + (1 - alpha * alpha) * wz * wz)) / (kDiscSteps * kDiscSteps);
+        const double masking =
+            2 * wz / (wz + std::sqrt(alpha * alpha + (1 - alpha * alpha) * wz * wz)) / (kDiscSteps * kDiscSteps);
         const double away = std::max(0.0, 1 - facing), away2 = away * away;
         m.reflected += masking;
         m.rise += masking * away2 * away2 * away;
@@ -89,7 +90,8 @@ BandMoments bandMoments(double tilt)
     for (int i = 0; i < kSteps; ++i)
         for (int k = 0; k < kSteps; ++k)
         {
-            const double r2 = (i + 0.5) / kSteps, z = std::sqrt(1 - r2), x = std::sqrt(r2) * std::cos(2 * kPi * (k + 0.5) / kSteps);
+            const double r2 = (i + 0.5) / kSteps, z = std::sqrt(1 - r2),
+                         x = std::sqrt(r2) * std::cos(2 * kPi * (k + 0.5) / kSteps);
             const double t = x * std::sin(tilt) + z * std::cos(tilt);
             const std::array<double, 4> p{1, t, 1.5 * t * t - 0.5, 2.5 * t * t * t - 1.5 * t};
             for (size_t band = 0; band < 4; ++band)
@@ -143,7 +145,8 @@ gpu::GlossyLobe glossyLobe(double roughness, double cosine)
 {
     static const std::vector<Shape> kShapes = possibleShapes();
     const Moments brdf = brdfMoments(roughness, std::clamp(cosine, kLeastCosine, 1.0));
-    const auto distance = [&](const Shape& s) { return (s.x - brdf.x) * (s.x - brdf.x) + (s.z - brdf.z) * (s.z - brdf.z); };
+    const auto distance = [&](const Shape& s)
+    { return (s.x - brdf.x) * (s.x - brdf.x) + (s.z - brdf.z) * (s.z - brdf.z); };
     const Shape* nearest = &kShapes[0];
     double least = distance(*nearest);
     for (const Shape& shape : kShapes)
@@ -160,14 +163,15 @@ std::vector<gpu::GlossyLobe> glossyLobes()
     std::vector<gpu::GlossyLobe> lobes(gpu::kLobeRoughnesses * gpu::kLobeCosines);
     std::vector<std::function<Status()>> rows;
     for (uint32_t r = 0; r < gpu::kLobeRoughnesses; ++r)
-        rows.emplace_back([&lobes, r]() -> Status
-        {
-            for (uint32_t c = 0; c < gpu::kLobeCosines; ++c)
-                lobes[r * gpu::kLobeCosines + c] =
-                    glossyLobe(gpu::kHarmonicsFrom + (1 - gpu::kHarmonicsFrom) * r / double(gpu::kLobeRoughnesses - 1),
-                               c / double(gpu::kLobeCosines - 1));
-            return Success{};
-        });
+        rows.emplace_back(
+            [&lobes, r]() -> Status
+            {
+                for (uint32_t c = 0; c < gpu::kLobeCosines; ++c)
+                    lobes[r * gpu::kLobeCosines + c] = glossyLobe(
+                        gpu::kHarmonicsFrom + (1 - gpu::kHarmonicsFrom) * r / double(gpu::kLobeRoughnesses - 1),
+                        c / double(gpu::kLobeCosines - 1));
+                return Success{};
+            });
     check(bool(package::runAll(rows, true)), "integration cannot fail");
     return lobes;
 }

@@ -5,7 +5,8 @@
 
 namespace
 {
-constexpr uint32_t kManyLights = 4; // from here on some of them may be hidden; a quad lamp is two triangles, hence two lights
+constexpr uint32_t kManyLights =
+    4; // from here on some of them may be hidden; a quad lamp is two triangles, hence two lights
 
 /// Scale of the fixed-point estimates: as large as possible without overflow in a cell that all photons leave from.
 float estimateScale(uint32_t photon_count)
@@ -19,7 +20,8 @@ float estimateScale(uint32_t photon_count)
 struct GuidedLights
 {
     gpu::GuideGroups groups{};
-    std::vector<float> other_lights; // cumulative fraction of power by light, without those that have a group of their own
+    std::vector<float>
+        other_lights; // cumulative fraction of power by light, without those that have a group of their own
 };
 
 GuidedLights groupsOf(std::span<const LightProbability> lights)
@@ -87,8 +89,7 @@ void GuideStage::emit(Recorder& rec, const Buffer& starts, const gpu::EmitParams
              {"Cells", cells_}});
 }
 
-void GuideStage::splat(Recorder& rec, const RayQueue& queue, uint32_t max_rays, const Buffer& hits,
-                      bool more)
+void GuideStage::splat(Recorder& rec, const RayQueue& queue, uint32_t max_rays, const Buffer& hits, bool more)
 {
     if (!more)
         rec.clear(importance_);

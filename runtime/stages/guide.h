@@ -21,7 +21,7 @@ public:
     // What was learned last, for tests and views.
     const Buffer& cells() const { return cells_; } // uint[path_count]: where each path left; kNone: it did not
     const Buffer& distribution() const { return distribution_; } // gpu::GuideDistribution
-    const Buffer& importance() const { return importance_; }             // uint[kGuideBins]: gathering rays that ended there
+    const Buffer& importance() const { return importance_; }     // uint[kGuideBins]: gathering rays that ended there
 
     /// `params.path_count` photons leave the lights by what was learned. @param starts gpu::PhotonStart[path_count]
     void emit(Recorder& rec, const Buffer& starts, const gpu::EmitParams& params) const;

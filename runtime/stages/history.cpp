@@ -6,8 +6,9 @@
 #include <cmath>
 
 HistoryStage::HistoryStage(const Device& device, uint32_t max_pixels)
-    : blend_(device.kernel("history/blend")), pixels_{device.texelArray<gpu::PixelHistory>("history.pixels_a", max_pixels),
-                                                      device.texelArray<gpu::PixelHistory>("history.pixels_b", max_pixels)}
+    : blend_(device.kernel("history/blend")), pixels_{
+                                                  device.texelArray<gpu::PixelHistory>("history.pixels_a", max_pixels),
+                                                  device.texelArray<gpu::PixelHistory>("history.pixels_b", max_pixels)}
 {
 }
 

@@ -13,8 +13,8 @@ public:
         const Buffer& diffuse_points; // gpu::DiffusePoint[point_count]
         const Buffer& radiance;       // vec3[point_count], grows by the indirect diffuse light
         uint32_t point_count;
-        uint32_t width; // of the picture, pixels
-        float alpha; // of Eq. 2, per view distance, where no sample is accepted
+        uint32_t width;     // of the picture, pixels
+        float alpha;        // of Eq. 2, per view distance, where no sample is accepted
         bool white = false; // as if every surface reflected all of it and nothing else had been: a debug view
     };
     struct Sorted // samples as pixels look them up

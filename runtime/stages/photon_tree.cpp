@@ -20,11 +20,8 @@ PhotonTreeStage::Output PhotonTreeStage::record(Recorder& rec, const PhotonStage
                      {"Keys", tree_.keys()},
                      {"Order", tree_.order()}});
     tree_.recordKeyed(rec, spheres_, size_, 32);
-    rec.runIndirect(reorder_, size_, NoParams{},
-                    {{"Size", size_},
-                     {"Slots", in.slots},
-                     {"Order", tree_.order()},
-                     {"Photons", in.photons},
-                     {"Sorted", sorted_}});
+    rec.runIndirect(
+        reorder_, size_, NoParams{},
+        {{"Size", size_}, {"Slots", in.slots}, {"Order", tree_.order()}, {"Photons", in.photons}, {"Sorted", sorted_}});
     return output();
 }

@@ -9,17 +9,17 @@ constexpr float kAimedFraction = 0.9f;
 PhotonStage::PhotonStage(const Device& device, const SceneGpu& scene, PhotonKind kind, uint32_t max_paths,
                          uint32_t capacity)
     : kind_(kind), has_targets_(scene.info().caustic_target_count > 0), capacity_(capacity),
-      emit_(device.kernel("photons/emit", scene.constants())), trace_(device.kernel("photons/trace", scene.constants())),
-      close_(device.kernel("photons/close")), place_(device.kernel("photons/place")),
-      scan_(device, "photons.scan", max_paths), starts_(device.array<gpu::PhotonStart>("photons.starts", max_paths)),
+      emit_(device.kernel("photons/emit", scene.constants())),
+      trace_(device.kernel("photons/trace", scene.constants())), close_(device.kernel("photons/close")),
+      place_(device.kernel("photons/place")), scan_(device, "photons.scan", max_paths),
+      starts_(device.array<gpu::PhotonStart>("photons.starts", max_paths)),
       photons_(device.array<gpu::Photon>("photons.photons", capacity)),
       tags_(device.array<gpu::PhotonTag>("photons.tags", capacity)),
       appended_(device.array<uint32_t>("photons.appended", 1)),
       counts_(device.array<uint32_t>("photons.counts", max_paths)),
       offsets_(device.array<uint32_t>("photons.offsets", max_paths)),
       total_(device.array<uint32_t>("photons.total", 1)), store_(device.array<gpu::PhotonStore>("photons.store", 1)),
-      slots_(device.array<uint32_t>("photons.slots", capacity)),
-      size_(device.array<gpu::QueueSize>("photons.size", 1)),
+      slots_(device.array<uint32_t>("photons.slots", capacity)), size_(device.array<gpu::QueueSize>("photons.size", 1)),
       path_size_(device.array<gpu::QueueSize>("photons.path_size", 1)),
       in_order_(device.array<gpu::QueueSize>("photons.in_order", 1)),
       again_(device.array<gpu::QueueSize>("photons.again", 1)),
@@ -46,9 +46,9 @@ PhotonStage::Output PhotonStage::record(Recorder& rec, const RayStage& rays, con
                             .bounce_limit = in.bounce_limit,
                             .caustic = caustic,
                             .again = 0};
-    const std::initializer_list<Binding> bindings{{"Starts", starts_},   {"Photons", photons_}, {"Tags", tags_},
-                                                  {"Appended", appended_}, {"Counts", counts_}, {"Offsets", offsets_},
-                                                  {"Store", store_},     {"Slots", slots_},     {"Traced", traced_}};
+    const std::initializer_list<Binding> bindings{{"Starts", starts_},     {"Photons", photons_}, {"Tags", tags_},
+                                                  {"Appended", appended_}, {"Counts", counts_},   {"Offsets", offsets_},
+                                                  {"Store", store_},       {"Slots", slots_},     {"Traced", traced_}};
     rec.clear(appended_);
     rec.clear(traced_);
     rec.run(trace_, in.path_count, params, bindings);

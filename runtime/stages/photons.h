@@ -24,8 +24,9 @@ public:
         uint32_t path_count; // photons to emit, <= max_paths
         uint32_t first_path; // index of path 0 in the sequence of all frames
         uint32_t seed;
-        const GuideStage* guide = nullptr;    // the emission distribution; of PhotonKind::kGlobal only
-        uint32_t bounce_limit = gpu::kNone;   // photons that a path may store; a limit loses power: for tests of the first bounces
+        const GuideStage* guide = nullptr; // the emission distribution; of PhotonKind::kGlobal only
+        uint32_t bounce_limit =
+            gpu::kNone; // photons that a path may store; a limit loses power: for tests of the first bounces
         bool operator==(const Input&) const = default; // equal input under equal lights gives equal photons
     };
     using Output = StoredPhotons;
@@ -39,6 +40,6 @@ private:
     uint32_t capacity_;
     Kernel emit_, trace_, close_, place_;
     Scan scan_;
-    Buffer starts_, photons_, tags_, appended_, counts_, offsets_, total_, store_, slots_, size_, path_size_, in_order_, again_,
-        traced_;
+    Buffer starts_, photons_, tags_, appended_, counts_, offsets_, total_, store_, slots_, size_, path_size_, in_order_,
+        again_, traced_;
 };

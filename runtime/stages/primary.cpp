@@ -4,8 +4,7 @@
 
 PrimaryStage::PrimaryStage(const Device& device, const SceneGpu& scene, uint32_t max_pixels, bool splits)
     : has_specular_(scene.hasFeature(gpu::kFeatureSpecular)), splits_(splits),
-      generate_(device.kernel("primary/generate")),
-      chain_(device.kernel("primary/chain", scene.constants())),
+      generate_(device.kernel("primary/generate")), chain_(device.kernel("primary/chain", scene.constants())),
       queue_(device, "primary.queue", max_pixels * (splits ? 2 : 1)),
       next_queue_(device, "primary.next_queue", max_pixels * (splits ? 2 : 1)),
       hits_(device.texelArray<gpu::Hit>("primary.hits", max_pixels * (splits ? 2 : 1))),
@@ -48,8 +47,14 @@ SurfaceBuffers PrimaryStage::record(Recorder& rec, const RayStage& rays, const I
         rays.closest(rec, *queue, hits_, traceSeed(in.camera.seed, in.camera.first_sample, depth));
         rays.reset(rec, next->size);
         rec.runIndirect(chain_, queue->size, params,
-                        {{"Queue", queue->size}, {"Rays", queue->rays}, {"Hits", hits_}, {"Points", points_}, {"Radiance", in.emission},
-                         {"NextQueue", next->size}, {"NextRays", next->rays}, {"DiffusePoints", diffuse_points_}});
+                        {{"Queue", queue->size},
+                         {"Rays", queue->rays},
+                         {"Hits", hits_},
+                         {"Points", points_},
+                         {"Radiance", in.emission},
+                         {"NextQueue", next->size},
+                         {"NextRays", next->rays},
+                         {"DiffusePoints", diffuse_points_}});
         rays.close(rec, next->size);
         std::swap(queue, next);
     }

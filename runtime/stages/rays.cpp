@@ -21,7 +21,10 @@ namespace
 constexpr uint32_t kMaxTallied = 4096; // queues
 }
 
-RayTally::RayTally(const Device& device) : device_(device), sizes_(device.array<gpu::QueueSize>("rays.tally", kMaxTallied)) {}
+RayTally::RayTally(const Device& device)
+    : device_(device), sizes_(device.array<gpu::QueueSize>("rays.tally", kMaxTallied))
+{
+}
 
 void RayTally::note(Recorder& rec, const Buffer& queue_size, bool any_hit)
 {
@@ -36,8 +39,8 @@ std::vector<RayTally::Entry> RayTally::entries() const
     std::vector<Entry> entries;
     for (size_t i = 0; i < calls_.size(); ++i)
     {
-        auto entry = std::ranges::find_if(
-            entries, [&](const Entry& e) { return e.scope == calls_[i].scope && e.any_hit == calls_[i].any_hit; });
+        auto entry = std::ranges::find_if(entries, [&](const Entry& e)
+                                          { return e.scope == calls_[i].scope && e.any_hit == calls_[i].any_hit; });
         if (entry == entries.end())
             entry = entries.insert(entries.end(), calls_[i]);
         entry->ray_count += sizes[i].count;
@@ -47,8 +50,7 @@ std::vector<RayTally::Entry> RayTally::entries() const
 
 RayStage::RayStage(const Device& device, const SceneGpu& scene)
     : closest_(device.kernel("rays/closest", scene.constants())),
-      visible_(device.kernel("rays/visible", scene.constants())),
-      dispatch_size_(device.kernel("rays/dispatch_size")),
+      visible_(device.kernel("rays/visible", scene.constants())), dispatch_size_(device.kernel("rays/dispatch_size")),
       set_size_(device.kernel("rays/set_size"))
 {
 }

@@ -12,8 +12,8 @@ public:
 
     struct Input
     {
-        gpu::CameraParams camera; // sample_count <= max_batch, first_sample: how many the pixels have had
-        uint32_t depth_limit;     // most vertices of a path; the rest of the light is lost
+        gpu::CameraParams camera;      // sample_count <= max_batch, first_sample: how many the pixels have had
+        uint32_t depth_limit;          // most vertices of a path; the rest of the light is lost
         uint32_t term = gpu::kTermAll; // kTerm*: the paths whose light is kept
     };
     /// Traces camera.sample_count paths a pixel.

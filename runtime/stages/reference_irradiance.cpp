@@ -75,7 +75,8 @@ std::vector<ReferenceIrradiance::Estimate> ReferenceIrradiance::measure(std::spa
     for (uint32_t pass = 0; pass < pass_count_; ++pass)
     {
         rec.begin(scene_.descriptorSet());
-        rec.run(generate_, count * gpu::kRaysGroupSize, gpu::GatherParams{.ray_count = pass_rays_, .seed = traceSeed(seed, pass, 0)},
+        rec.run(generate_, count * gpu::kRaysGroupSize,
+                gpu::GatherParams{.ray_count = pass_rays_, .seed = traceSeed(seed, pass, 0)},
                 {{"Size", size},
                  {"Samples", points},
                  {"Queue", queue_.size},

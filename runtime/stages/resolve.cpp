@@ -4,8 +4,7 @@
 #include <cmath>
 
 ResolveStage::ResolveStage(const Device& device, uint32_t max_pixels)
-    : accumulate_(device.kernel("resolve/accumulate")),
-      tonemap_(device.kernel("resolve/tonemap")),
+    : accumulate_(device.kernel("resolve/accumulate")), tonemap_(device.kernel("resolve/tonemap")),
       sum_(device.array<gpu::vec3>("resolve.sum", max_pixels)),
       compensation_(device.array<gpu::vec3>("resolve.compensation", max_pixels)),
       non_finite_(device.array<uint32_t>("resolve.non_finite", 1)),
@@ -34,8 +33,8 @@ const Buffer& ResolveStage::display(Recorder& rec, uint32_t pixel_count, float e
     return display(rec, sum_, 1 / float(std::max(sample_count_, 1u)), pixel_count, exposure, tonemap, bgra);
 }
 
-const Buffer& ResolveStage::display(Recorder& rec, const Buffer& picture, float scale, uint32_t pixel_count, float exposure,
-                                    Tonemap tonemap, bool bgra)
+const Buffer& ResolveStage::display(Recorder& rec, const Buffer& picture, float scale, uint32_t pixel_count,
+                                    float exposure, Tonemap tonemap, bool bgra)
 {
     const auto scope = rec.scope("resolve");
     const gpu::TonemapParams params{.pixel_count = pixel_count,

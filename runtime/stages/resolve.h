@@ -3,7 +3,12 @@
 #include "runtime/gpu/gpu.h"
 #include "shaders/resolve/resolve.h"
 
-enum class Tonemap : uint32_t { kSrgb = gpu::kTonemapSrgb, kAces = gpu::kTonemapAces, kAgx = gpu::kTonemapAgx };
+enum class Tonemap : uint32_t
+{
+    kSrgb = gpu::kTonemapSrgb,
+    kAces = gpu::kTonemapAces,
+    kAgx = gpu::kTonemapAgx
+};
 
 class ResolveStage
 {
@@ -17,8 +22,8 @@ public:
     /// @param exposure in stops. @return packed 8-bit sRGB pixels, uint[pixel_count], RGBA or BGRA in memory order
     const Buffer& display(Recorder& rec, uint32_t pixel_count, float exposure, Tonemap tonemap, bool bgra);
     /// The same of another picture. @param picture vec3[pixel_count], of which `scale` times is shown
-    const Buffer& display(Recorder& rec, const Buffer& picture, float scale, uint32_t pixel_count, float exposure, Tonemap tonemap,
-                          bool bgra);
+    const Buffer& display(Recorder& rec, const Buffer& picture, float scale, uint32_t pixel_count, float exposure,
+                          Tonemap tonemap, bool bgra);
     /// The same of colours that are for the display as they are. @param colors vec3[pixel_count], linear
     const Buffer& displayColors(Recorder& rec, const Buffer& colors, uint32_t pixel_count, bool bgra)
     {
@@ -27,7 +32,10 @@ public:
 
     const Buffer& sum() const { return sum_; } // vec3[pixel_count]
     uint32_t sampleCount() const { return sample_count_; }
-    const Buffer& nonFiniteCount() const { return non_finite_; } // uint: samples left out because they were NaN or infinite
+    const Buffer& nonFiniteCount() const
+    {
+        return non_finite_;
+    } // uint: samples left out because they were NaN or infinite
 
 private:
     Kernel accumulate_, tonemap_;

@@ -34,18 +34,15 @@ uint32_t pointCount(uint32_t width, uint32_t height, uint32_t stride)
 }
 } // namespace
 
-SamplesStage::SamplesStage(const Device& device, uint32_t width, uint32_t height,
-                           uint32_t max_samples)
-    : width_(width), height_(height),
-      stride_(strideFor(width * height, max_samples)), levels_(levelsFor(width, height, stride_)),
-      grid_count_(1u << (2 * levels_)), point_count_(pointCount(width, height, stride_)),
-      points_kernel_(device.kernel("samples/points")), mean_(device.kernel("samples/mean")),
-      variation_(device.kernel("samples/variation")), budget_(device.kernel("samples/budget")),
-      seed_(device.kernel("samples/seed")), assign_(device.kernel("samples/assign")),
-      update_(device.kernel("samples/update")), snap_(device.kernel("samples/snap")),
-      occupied_kernel_(device.kernel("samples/occupied")),
-      place_(device.kernel("samples/place")),
-      seed_compaction_(device, "samples.seed_compaction", point_count_),
+SamplesStage::SamplesStage(const Device& device, uint32_t width, uint32_t height, uint32_t max_samples)
+    : width_(width), height_(height), stride_(strideFor(width * height, max_samples)),
+      levels_(levelsFor(width, height, stride_)), grid_count_(1u << (2 * levels_)),
+      point_count_(pointCount(width, height, stride_)), points_kernel_(device.kernel("samples/points")),
+      mean_(device.kernel("samples/mean")), variation_(device.kernel("samples/variation")),
+      budget_(device.kernel("samples/budget")), seed_(device.kernel("samples/seed")),
+      assign_(device.kernel("samples/assign")), update_(device.kernel("samples/update")),
+      snap_(device.kernel("samples/snap")), occupied_kernel_(device.kernel("samples/occupied")),
+      place_(device.kernel("samples/place")), seed_compaction_(device, "samples.seed_compaction", point_count_),
       sample_compaction_(device, "samples.compaction", max_samples), tree_(device, "samples.tree", max_samples),
       point_size_(device.array<gpu::QueueSize>("samples.point_size", 1)),
       points_(device.array<gpu::SamplePoint>("samples.points", point_count_)),

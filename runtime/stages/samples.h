@@ -22,16 +22,13 @@ public:
     };
     struct Output
     {
-        const Buffer& size;      // gpu::QueueSize: samples
-        const Buffer& samples;   // gpu::Sample[size.count], irradiance still to be gathered
-        const Buffer& spheres;   // vec4[size.count]: their positions and supports
+        const Buffer& size;    // gpu::QueueSize: samples
+        const Buffer& samples; // gpu::Sample[size.count], irradiance still to be gathered
+        const Buffer& spheres; // vec4[size.count]: their positions and supports
     };
     Output record(Recorder& rec, const RayStage& rays, const Input& in) const;
     /// What the last record() left.
-    Output output() const
-    {
-        return {.size = size_, .samples = samples_, .spheres = spheres_};
-    }
+    Output output() const { return {.size = size_, .samples = samples_, .spheres = spheres_}; }
 
     struct Quadtree // how the samples came about
     {
@@ -60,8 +57,7 @@ private:
     uint32_t stride_, levels_;
     uint32_t grid_count_,
         point_count_; // points of the quadtree's square; the first of them that hold all of the picture
-    Kernel points_kernel_, mean_, variation_, budget_, seed_, assign_, update_, snap_, occupied_kernel_,
-        place_;
+    Kernel points_kernel_, mean_, variation_, budget_, seed_, assign_, update_, snap_, occupied_kernel_, place_;
     Compaction seed_compaction_, sample_compaction_;
     Tree tree_;
     Buffer point_size_, points_, quad_nodes_, budgets_, seed_flags_, seeds_;

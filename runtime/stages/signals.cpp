@@ -5,7 +5,8 @@
 
 SignalsStage::SignalsStage(const Device& device, const SceneGpu& scene, uint32_t max_pixels)
     : prepare_(device.kernel("signals/prepare", scene.constants())), apply_(device.kernel("signals/apply")),
-      views_(device.array<gpu::FrameViews>("signals.views", 1)), motions_(device.array<gpu::Motion>("signals.motions", max_pixels)),
+      views_(device.array<gpu::FrameViews>("signals.views", 1)),
+      motions_(device.array<gpu::Motion>("signals.motions", max_pixels)),
       direct_(device.texelArray<gpu::LightSignal>("signals.direct", max_pixels)),
       glossy_(device.texelArray<gpu::LightSignal>("signals.glossy", max_pixels)),
       guides_{device.texelArray<gpu::SurfaceGuide>("signals.guides_a", max_pixels),
@@ -13,8 +14,8 @@ SignalsStage::SignalsStage(const Device& device, const SceneGpu& scene, uint32_t
 {
 }
 
-SignalBuffers SignalsStage::record(Recorder& rec, const FrameInfo& frame, const SurfaceBuffers& surface, const LightBuffers& light,
-                                   uint32_t terms)
+SignalBuffers SignalsStage::record(Recorder& rec, const FrameInfo& frame, const SurfaceBuffers& surface,
+                                   const LightBuffers& light, uint32_t terms)
 {
     const auto scope = rec.scope("signals");
     now_ = 1 - now_;
@@ -33,10 +34,15 @@ SignalBuffers SignalsStage::record(Recorder& rec, const FrameInfo& frame, const 
              {"Motions", motions_},
              {"DirectSignals", direct_},
              {"GlossySignals", glossy_}});
-    return {.guides = guides_[now_], .last_guides = guides_[1 - now_], .motions = motions_, .direct = direct_, .glossy = glossy_};
+    return {.guides = guides_[now_],
+            .last_guides = guides_[1 - now_],
+            .motions = motions_,
+            .direct = direct_,
+            .glossy = glossy_};
 }
 
-void SignalsStage::apply(Recorder& rec, const Buffer& own, const Buffer& filtered, const Buffer& light, uint32_t point_count) const
+void SignalsStage::apply(Recorder& rec, const Buffer& own, const Buffer& filtered, const Buffer& light,
+                         uint32_t point_count) const
 {
     rec.run(apply_, point_count, gpu::SignalParams{.point_count = point_count},
             {{"Signals", own}, {"Filtered", filtered}, {"Radiance", light}});

@@ -21,9 +21,11 @@ public:
     SignalsStage(const Device& device, const SceneGpu& scene, uint32_t max_pixels);
 
     /// @param terms gpu::kLight* bits: of `light` that is there
-    SignalBuffers record(Recorder& rec, const FrameInfo& frame, const SurfaceBuffers& surface, const LightBuffers& light, uint32_t terms);
+    SignalBuffers record(Recorder& rec, const FrameInfo& frame, const SurfaceBuffers& surface,
+                         const LightBuffers& light, uint32_t terms);
     /// Turns a signal into light again. @param filtered the signal of `own` after filters, @param light vec3[point_count]
-    void apply(Recorder& rec, const Buffer& own, const Buffer& filtered, const Buffer& light, uint32_t point_count) const;
+    void apply(Recorder& rec, const Buffer& own, const Buffer& filtered, const Buffer& light,
+               uint32_t point_count) const;
 
     const Buffer& motions() const { return motions_; } // of the last record()
 

@@ -6,8 +6,10 @@ Constant climbConstant(const Device& device)
 }
 
 Tree::Tree(const Device& device, std::string_view name, uint32_t max_count)
-    : keys_kernel_(device.kernel("tree/keys")), hierarchy_(device.kernel("tree/hierarchy")), bounds_(device.kernel("tree/bounds", {climbConstant(device)})),
-      sort_(device, fmt::format("{}.sort", name), max_count), keys_(device.array<uint32_t>(fmt::format("{}.keys", name), max_count)),
+    : keys_kernel_(device.kernel("tree/keys")), hierarchy_(device.kernel("tree/hierarchy")),
+      bounds_(device.kernel("tree/bounds", {climbConstant(device)})),
+      sort_(device, fmt::format("{}.sort", name), max_count),
+      keys_(device.array<uint32_t>(fmt::format("{}.keys", name), max_count)),
       order_(device.array<uint32_t>(fmt::format("{}.order", name), max_count)),
       nodes_(device.texelArray<gpu::TreeNode>(fmt::format("{}.nodes", name), max_count)),
       leaf_parents_(device.array<uint32_t>(fmt::format("{}.leaf_parents", name), max_count)),
@@ -18,7 +20,8 @@ Tree::Tree(const Device& device, std::string_view name, uint32_t max_count)
 
 void Tree::record(Recorder& rec, const Buffer& spheres, const Buffer& size) const
 {
-    rec.runIndirect(keys_kernel_, size, NoParams{}, {{"Size", size}, {"Spheres", spheres}, {"Keys", keys_}, {"Order", order_}});
+    rec.runIndirect(keys_kernel_, size, NoParams{},
+                    {{"Size", size}, {"Spheres", spheres}, {"Keys", keys_}, {"Order", order_}});
     recordKeyed(rec, spheres, size, gpu::kTreeKeyBits);
 }
 
@@ -26,7 +29,11 @@ void Tree::recordKeyed(Recorder& rec, const Buffer& spheres, const Buffer& size,
 {
     sort_.record(rec, keys_, order_, size, key_bits);
     rec.runIndirect(hierarchy_, size, NoParams{},
-                    {{"Size", size}, {"Keys", keys_}, {"Nodes", nodes_}, {"LeafParents", leaf_parents_}, {"NodeParents", node_parents_}});
+                    {{"Size", size},
+                     {"Keys", keys_},
+                     {"Nodes", nodes_},
+                     {"LeafParents", leaf_parents_},
+                     {"NodeParents", node_parents_}});
     refit(rec, spheres, size);
 }
 
@@ -34,6 +41,11 @@ void Tree::refit(Recorder& rec, const Buffer& spheres, const Buffer& size) const
 {
     rec.clear(arrivals_);
     rec.runIndirect(bounds_, size, NoParams{},
-                    {{"Size", size}, {"Spheres", spheres}, {"Order", order_}, {"LeafParents", leaf_parents_},
-                     {"NodeParents", node_parents_}, {"Nodes", nodes_}, {"Arrivals", arrivals_}});
+                    {{"Size", size},
+                     {"Spheres", spheres},
+                     {"Order", order_},
+                     {"LeafParents", leaf_parents_},
+                     {"NodeParents", node_parents_},
+                     {"Nodes", nodes_},
+                     {"Arrivals", arrivals_}});
 }

@@ -25,10 +25,13 @@ public:
     /// The same tree after the spheres have moved a little: it holds them all, if no longer in the order of their keys.
     void refit(Recorder& rec, const Buffer& spheres, const Buffer& size) const;
 
-    const Buffer& keys() const { return keys_; }               // uint[count]
-    const Buffer& nodes() const { return nodes_; }             // gpu::TreeNode[count - 1]
-    const Buffer& order() const { return order_; }             // uint[count]: which sphere is the i-th of the sorted ones
-    const Buffer& leafParents() const { return leaf_parents_; } // uint[count]: node | kTreeLeafBit where it is the right child
+    const Buffer& keys() const { return keys_; }   // uint[count]
+    const Buffer& nodes() const { return nodes_; } // gpu::TreeNode[count - 1]
+    const Buffer& order() const { return order_; } // uint[count]: which sphere is the i-th of the sorted ones
+    const Buffer& leafParents() const
+    {
+        return leaf_parents_;
+    } // uint[count]: node | kTreeLeafBit where it is the right child
     const Buffer& nodeParents() const { return node_parents_; } // uint[count - 1]; the root's is undefined
 
 private:

@@ -16,9 +16,8 @@ void ViewScaleStage::record(Recorder& rec, const Buffer& points, uint32_t point_
     // An orthographic camera may be at any distance: the scale is the size of its picture.
     const gpu::vec3 r = camera.right, u = camera.up;
     const float side = std::sqrt(r.x * r.x + r.y * r.y + r.z * r.z) + std::sqrt(u.x * u.x + u.y * u.y + u.z * u.z);
-    const gpu::MeasureParams params{.focus = camera.position,
-                                    .point_count = point_count,
-                                    .fixed_distance = camera.orthographic != 0 ? side : 0};
+    const gpu::MeasureParams params{
+        .focus = camera.position, .point_count = point_count, .fixed_distance = camera.orthographic != 0 ? side : 0};
     rec.run(measure_, 1, params, {{"Points", points}, {"Scale", scene_.viewScale()}});
     rec.copy(scene_.viewScale(), readback_, sizeof(gpu::ViewScale));
 }

@@ -11,7 +11,7 @@ struct CausticsParams
 {
     uint point_count;
     uint photon_count; // k of the density estimation
-    float radius; // of the density estimation at most: of the distance from the viewer
+    float radius;      // of the density estimation at most: of the distance from the viewer
 };
 GPU_SIZE(CausticsParams, 12);
 

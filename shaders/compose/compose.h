@@ -5,7 +5,8 @@
 
 GPU_NAMESPACE_BEGIN
 
-GPU_CONST uint kLightEmission = 1u, kLightSharpDirect = 2u, kLightDirect = 4u, kLightIndirect = 8u, kLightGlossy = 16u, kLightCaustics = 32u;
+GPU_CONST uint kLightEmission = 1u, kLightSharpDirect = 2u, kLightDirect = 4u, kLightIndirect = 8u, kLightGlossy = 16u,
+               kLightCaustics = 32u;
 
 struct ComposeParams
 {

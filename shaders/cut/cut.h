@@ -11,13 +11,13 @@ GPU_NAMESPACE_BEGIN
 
 struct PhotonSums // over the photons of an inner node
 {
-    vec3 power;     // watts
-    float weight;   // sum of luminances
-    vec3 position;  // luminance-weighted sum of the photons' positions
-    float squares;  // sum of squared luminances
-    vec3 normal;    // sum of the photons' normals, unweighted: weighted by power, a bright photon would hide dim ones
-    vec3 mean;      // of their positions, unweighted
-    vec3 spread;    // sums of xx, yy, zz of their positions from the mean
+    vec3 power;      // watts
+    float weight;    // sum of luminances
+    vec3 position;   // luminance-weighted sum of the photons' positions
+    float squares;   // sum of squared luminances
+    vec3 normal;     // sum of the photons' normals, unweighted: weighted by power, a bright photon would hide dim ones
+    vec3 mean;       // of their positions, unweighted
+    vec3 spread;     // sums of xx, yy, zz of their positions from the mean
     vec3 spread_off; // likewise of xy, xz, yz
 };
 GPU_SIZE(PhotonSums, 80);
@@ -39,7 +39,7 @@ GPU_SIZE(CutNode, 32);
 GPU_CUT_MODES(GPU_CHOICE_CONSTANT)
 
 GPU_CONST uint kCutGroupSize = 64u;
-GPU_CONST uint kCutFewest = 8u;        // photons from which a density can be estimated
+GPU_CONST uint kCutFewest = 8u; // photons from which a density can be estimated
 // Of the photons of a density estimate a node of the refined cut holds this many times as many at most: larger ones blur more
 // than the estimate would (a box of white walls read 2 % too dark where nodes were as large as chance allowed).
 GPU_CONST uint kCutMost = 2u;
@@ -57,7 +57,8 @@ GPU_CONST float kProbeHeight = 0.2f;
 // 7 bits, 0 where the disc is seen from infinitely far; and kCutIsClear.
 GPU_CONST uint kCutNormalBits = 12u;
 GPU_CONST uint kCutEyeSteps = 127u;
-GPU_CONST uint kCutIsClear = 0x80000000u; // all of the disc is on the surface and visible: a lookup needs no visibility ray
+GPU_CONST uint kCutIsClear =
+    0x80000000u; // all of the disc is on the surface and visible: a lookup needs no visibility ray
 
 struct SampleDirectionParams
 {

@@ -9,9 +9,9 @@ GPU_NAMESPACE_BEGIN
 // take the shadow ray of the sky. Each group gets its own.
 struct LightPick // Walker's alias method within a group
 {
-    uint light;      // taken where a second uniform number < threshold
+    uint light; // taken where a second uniform number < threshold
     float threshold;
-    uint otherwise;  // light taken else
+    uint otherwise; // light taken else
 };
 GPU_SIZE(LightPick, 12);
 
@@ -25,9 +25,9 @@ struct DirectParams
     uint light_seed;         // the same for all dispatches of a group
     uint first_pick;         // the group's part of the picks
     uint pick_count;
-    float share;             // of the group, of all lights' pmf
-    uint candidate_count;    // light samples of which one gets the shadow ray
-    uint traces_bsdf_samples;      // 1: this dispatch also sends the BSDF-sampled rays
+    float share;              // of the group, of all lights' pmf
+    uint candidate_count;     // light samples of which one gets the shadow ray
+    uint traces_bsdf_samples; // 1: this dispatch also sends the BSDF-sampled rays
 };
 GPU_SIZE(DirectParams, 44);
 

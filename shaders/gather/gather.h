@@ -35,12 +35,12 @@ struct GatherParams
 {
     uint ray_count; // of a sample or pixel
     uint seed;
-    uint depth;       // delta events before this one
+    uint depth; // delta events before this one
     uint depth_limit;
-    uint mode;        // kCut*
+    uint mode;         // kCut*
     uint photon_count; // k, in mode kCutKnn
-    float radius;     // of density estimation at most, in mode kCutKnn: of the distance from the viewer
-    uint leg_count;   // for aiming: all legs, or 0
+    float radius;      // of density estimation at most, in mode kCutKnn: of the distance from the viewer
+    uint leg_count;    // for aiming: all legs, or 0
 };
 GPU_SIZE(GatherParams, 32);
 

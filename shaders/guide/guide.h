@@ -10,25 +10,26 @@ GPU_NAMESPACE_BEGIN
 // together are the last group, whose cells divide their power. Before anything is learned, groups are equally likely, because the
 // power of a directional light does not tell how much of it is visible, and so are the cells of each.
 GPU_CONST uint kGuideSide = 32u;
-GPU_CONST uint kGuideCells = kGuideSide * kGuideSide; // of a group
-GPU_CONST uint kGuideInfiniteLights = 7u;                      // that have a group of their own at most
-GPU_CONST uint kGuideGroups = kGuideInfiniteLights + 1u;       // the last is that of the other lights
+GPU_CONST uint kGuideCells = kGuideSide * kGuideSide;    // of a group
+GPU_CONST uint kGuideInfiniteLights = 7u;                // that have a group of their own at most
+GPU_CONST uint kGuideGroups = kGuideInfiniteLights + 1u; // the last is that of the other lights
 GPU_CONST uint kGuideTotal = kGuideGroups * kGuideCells;
-GPU_CONST uint kGuideVoxels = 64u;                    // each way, over the grid of lib/morton.glsl
-GPU_CONST uint kGuideSides = 6u;                      // of a voxel: the two sides of a thin wall differ in importance
+GPU_CONST uint kGuideVoxels = 64u; // each way, over the grid of lib/morton.glsl
+GPU_CONST uint kGuideSides = 6u;   // of a voxel: the two sides of a thin wall differ in importance
 GPU_CONST uint kGuideBins = kGuideSides * kGuideVoxels * kGuideVoxels * kGuideVoxels;
-GPU_CONST uint kGuideSplatStride = 4u;                 // one of this many gathering rays is splatted
-GPU_CONST uint kGuideMostImportance = 1023u;              // largest importance of a place, rays
+GPU_CONST uint kGuideSplatStride = 4u;       // one of this many gathering rays is splatted
+GPU_CONST uint kGuideMostImportance = 1023u; // largest importance of a place, rays
 GPU_CONST uint kGuideGroupSize = 64u;
 GPU_CONST uint kGuideLearnSize = 256u;
 
-GPU_CONST float kGuideUnguided = 0.35f; // fraction of the photons that is emitted without guiding, which bounds the weights
-GPU_CONST float kGuideMemory = 0.75f;  // weight of what was learned before, a frame
+GPU_CONST float kGuideUnguided =
+    0.35f; // fraction of the photons that is emitted without guiding, which bounds the weights
+GPU_CONST float kGuideMemory = 0.75f; // weight of what was learned before, a frame
 
 struct GuideGroups // which lights they are; fixed for a scene
 {
     uint infinite_lights[kGuideInfiniteLights]; // light index; kNone: no such group
-    float shares[kGuideGroups];    // of all power
+    float shares[kGuideGroups];                 // of all power
     float unlearned[kGuideGroups]; // probability that a photon leaves by the group where nothing was learned
 };
 GPU_SIZE(GuideGroups, 92);
@@ -43,7 +44,8 @@ GPU_SIZE(GuideEstimate, 8);
 struct GuideDistribution // of emission, learned
 {
     float groups[kGuideGroups]; // probability of a group and those before it
-    float cells[kGuideTotal];   // within its group, cumulative probability of its cells: more precise than over all groups
+    float
+        cells[kGuideTotal]; // within its group, cumulative probability of its cells: more precise than over all groups
 };
 GPU_SIZE(GuideDistribution, 32800);
 

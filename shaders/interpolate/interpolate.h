@@ -7,7 +7,7 @@ GPU_NAMESPACE_BEGIN
 
 struct SampleTexels // a Sample as interpolation reads it, three texels
 {
-    vec3 position; // metres
+    vec3 position;  // metres
     float support2; // square metres: the support's square
     vec3 normal;
     float harmonic_mean_distance; // metres
@@ -19,9 +19,9 @@ GPU_SIZE(SampleTexels, 48);
 struct InterpolateParams
 {
     uint point_count;
-    uint width;   // of the picture, pixels
-    float alpha;  // of Eq. 2, per view distance, where no sample is accepted
-    uint white;   // 1: as if every surface reflected all of it
+    uint width;  // of the picture, pixels
+    float alpha; // of Eq. 2, per view distance, where no sample is accepted
+    uint white;  // 1: as if every surface reflected all of it
 };
 GPU_SIZE(InterpolateParams, 16);
 

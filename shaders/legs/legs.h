@@ -6,7 +6,7 @@
 GPU_NAMESPACE_BEGIN
 
 GPU_CONST uint kLegCount = 1024u; // that are taken from a map
-GPU_CONST uint kLegPaths = 8u;   // most paths that each is chosen from
+GPU_CONST uint kLegPaths = 8u;    // most paths that each is chosen from
 
 struct Leg // light on its way from one surface to another
 {
@@ -28,8 +28,9 @@ GPU_SIZE(LegParams, 4);
 GPU_CONST uint kAimColumns = 16u;
 GPU_CONST uint kAimRows = 16u;
 GPU_CONST uint kAimCells = kAimColumns * kAimRows; // column by column
-GPU_CONST uint kAimWhole = 1u << 24u;              // what all legs together count, so that a sum does not depend on the order of threads
-GPU_CONST float kAimMost = 0.5f;                   // most of the rays that legs aim: no ray weighs more than 1 / (1 - this)
+GPU_CONST uint kAimWhole =
+    1u << 24u;                   // what all legs together count, so that a sum does not depend on the order of threads
+GPU_CONST float kAimMost = 0.5f; // most of the rays that legs aim: no ray weighs more than 1 / (1 - this)
 
 GPU_NAMESPACE_END
 #endif

@@ -27,7 +27,7 @@ struct EmitParams
     uint path_count; // of the whole map: each photon carries its light's power / path_count
     uint first_path; // index of path 0 in the sequence of all frames
     uint seed;
-    float aim;       // probability of being aimed at a caustic target
+    float aim; // probability of being aimed at a caustic target
 };
 GPU_SIZE(EmitParams, 16);
 
@@ -40,7 +40,7 @@ GPU_SIZE(PhotonTag, 8);
 
 struct PhotonStore // what a map holds; made on the GPU
 {
-    uint path_count;   // paths that are in it whole: 0 .. path_count - 1; fewer than were emitted where the store is full
+    uint path_count; // paths that are in it whole: 0 .. path_count - 1; fewer than were emitted where the store is full
     uint photon_count; // of those paths
 };
 GPU_SIZE(PhotonStore, 8);

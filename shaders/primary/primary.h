@@ -40,14 +40,14 @@ GPU_SIZE(ChainParams, 44);
 
 struct ShadingPoint // where a pixel's light is to be found: first vertex after E S* that scatters
 {
-    vec3 position;     // metres, world
-    uint slot;         // index into BvhTriangles, kNone: background, finished
-    vec3 direction;    // unit, of the ray that arrived
-    uint depth;        // specular events before it
-    vec3 throughput;   // of the chain, 1/probability of its choices included
+    vec3 position;   // metres, world
+    uint slot;       // index into BvhTriangles, kNone: background, finished
+    vec3 direction;  // unit, of the ray that arrived
+    uint depth;      // specular events before it
+    vec3 throughput; // of the chain, 1/probability of its choices included
     vec2 barycentrics;
-    float width;       // metres, across the chain's last ray: of what textures show at once
-    float back;        // metres, back along that ray to where rays leave: off the surface by more than rounding
+    float width; // metres, across the chain's last ray: of what textures show at once
+    float back;  // metres, back along that ray to where rays leave: off the surface by more than rounding
 };
 GPU_SIZE(ShadingPoint, 60);
 
@@ -56,7 +56,7 @@ struct DiffusePoint // what a shading point shows of the irradiance that falls o
     vec3 position;    // metres, world; off the surface by what rounding needs, so that rays may start there
     vec2 normal;      // octahedral; the smooth one, before the normal map, on the viewer's side
     vec3 reflectance; // towards the viewer: throughput x diffuse reflectance x what even light
-                      // gives the bent normal of that which it gives the smooth one; 0: background, or nothing diffuse there
+        // gives the bent normal of that which it gives the smooth one; 0: background, or nothing diffuse there
 };
 GPU_SIZE(DiffusePoint, 32);
 

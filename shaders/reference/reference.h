@@ -33,8 +33,8 @@ struct ShadeParams
     uint pixel_count;
     uint first_sample;
     uint seed;
-    uint stages; // bits 1 << kStage*: light counts that a path finds in one of them
-    uint lobes;  // bits kLobe*: of x, through which it counts
+    uint stages;      // bits 1 << kStage*: light counts that a path finds in one of them
+    uint lobes;       // bits kLobe*: of x, through which it counts
     uint first_stage; // kStage*: of all paths at depth 0
 };
 GPU_SIZE(ShadeParams, 32);

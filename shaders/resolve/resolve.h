@@ -22,8 +22,8 @@ GPU_SIZE(AccumulateParams, 8);
 struct TonemapParams
 {
     uint pixel_count;
-    float scale;      // exposure / number of samples in the sum
-    uint curve;       // kTonemap*
+    float scale;        // exposure / number of samples in the sum
+    uint curve;         // kTonemap*
     uint swap_red_blue; // 1: the target is BGRA
 };
 GPU_SIZE(TonemapParams, 16);

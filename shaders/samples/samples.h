@@ -38,7 +38,8 @@ GPU_SIZE(Cluster, 16);
 
 struct ClusterSums // fixed-point, so that the sum does not depend on the order of threads
 {
-    uvec3 position; // from the cluster's centre, in a cube as wide as it is far from the viewer: units of 1 / ClusterParams.fixed_scale
+    uvec3
+        position; // from the cluster's centre, in a cube as wide as it is far from the viewer: units of 1 / ClusterParams.fixed_scale
     uint count;
     uvec3 normal;   // (n + 1) / 2 in the same units
     uint distance;  // of the points to the centre, in units of 1 / fixed_scale of that width
@@ -49,11 +50,11 @@ GPU_SIZE(ClusterSums, 40);
 
 struct Sample
 {
-    vec3 position;   // metres; of a shading point
+    vec3 position; // metres; of a shading point
     uint normal;
-    vec3 irradiance; // W/m^2, indirect only
-    float support;   // metres: influence radius
-    float harmonic_mean_distance;  // metres: harmonic mean distance of its rays' first hits
+    vec3 irradiance;              // W/m^2, indirect only
+    float support;                // metres: influence radius
+    float harmonic_mean_distance; // metres: harmonic mean distance of its rays' first hits
     uint pixel;
 };
 GPU_SIZE(Sample, 40);
@@ -71,11 +72,11 @@ struct SeedParams
 {
     uint level;
     uint levels;
-    uint budget;           // of the root
+    uint budget; // of the root
     uint seed;
-    float alpha;           // of Eq. 2, per view distance
+    float alpha; // of Eq. 2, per view distance
     float variation_scale;
-    uint uniform_;         // 1: budget follows the number of points, not their variation
+    uint uniform_; // 1: budget follows the number of points, not their variation
 };
 GPU_SIZE(SeedParams, 28);
 

@@ -29,7 +29,7 @@ GPU_CONST uint kViewPhotonShare = 2u;  // one photon of the map for so many pixe
 
 struct ViewParams
 {
-    uint view; // kView*
+    uint view;  // kView*
     uint width; // pixels
     uint height;
     uint curve;     // kTonemap* of the picture behind a view
@@ -42,8 +42,8 @@ struct QuadViewParams
     ViewParams view;
     uint stride; // pixels between points of the quadtree
     uint levels;
-    uint level;  // that is shown
-    float mean;  // samples of a whole node of that level, were they spread evenly
+    uint level; // that is shown
+    float mean; // samples of a whole node of that level, were they spread evenly
 };
 GPU_SIZE(QuadViewParams, 36);
 
@@ -63,7 +63,7 @@ struct ErrorViewParams
     uint height;
     uint reference_width;
     uint reference_height;
-    float scale; // of the summed samples: 1 / their count
+    float scale;  // of the summed samples: 1 / their count
     float floor_; // radiance below which errors are relative to it: black has no relative error
 };
 GPU_SIZE(ErrorViewParams, 24);

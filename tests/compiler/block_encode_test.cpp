@@ -79,12 +79,15 @@ TEST(BlockEncode, BlocksAreNeitherBrighterNorDarker)
             std::array<std::array<float, 3>, 3> plane;
             for (auto& channel : plane)
                 channel = {level(random), rise(random), rise(random)};
-            const Channels c = makeChannels([&](size_t i) {
-                std::array<float, 4> texel{0, 0, 0, 255};
-                for (size_t k = 0; k < 3; ++k)
-                    texel[k] = std::round(plane[k][0] + plane[k][1] * (float(i % 4) - 1.5f) + plane[k][2] * (float(i / 4) - 1.5f));
-                return texel;
-            });
+            const Channels c = makeChannels(
+                [&](size_t i)
+                {
+                    std::array<float, 4> texel{0, 0, 0, 255};
+                    for (size_t k = 0; k < 3; ++k)
+                        texel[k] = std::round(plane[k][0] + plane[k][1] * (float(i % 4) - 1.5f) +
+                                              plane[k][2] * (float(i / 4) - 1.5f));
+                    return texel;
+                });
             double error = 0;
             const blocks::Texels got = throughBc7(c, false);
             for (size_t i = 0; i < 16; ++i)
@@ -101,24 +104,35 @@ TEST(BlockEncode, BlocksAreNeitherBrighterNorDarker)
 
 TEST(BlockEncode, AGradientInAllChannelsKeepsToItsLine) // sixteen places for sixteen texels
 {
-    const Channels c = makeChannels([](size_t i) { return std::array<float, 4>{10.0f + 14 * float(i), 240.0f - 10 * float(i), 30.0f + 5 * float(i), 255.0f - 8 * float(i)}; });
+    const Channels c = makeChannels(
+        [](size_t i)
+        {
+            return std::array<float, 4>{10.0f + 14 * float(i), 240.0f - 10 * float(i), 30.0f + 5 * float(i),
+                                        255.0f - 8 * float(i)};
+        });
     EXPECT_LT(rootMeanSquare(c, throughBc7(c, true), 4), 1.5);
 }
 
 TEST(BlockEncode, TwoRegionsOfGradientsWithAnEdgeBetween) // mode 1: 8 places in each, 7 bits an endpoint
 {
-    const Channels c = makeChannels([](size_t i) {
-        const float t = float(i / 4);
-        return i % 4 < 2 ? std::array<float, 4>{200 + 10 * t, 20, 10 * t, 255} : std::array<float, 4>{10, 60 + 20 * t, 250 - 30 * t, 255};
-    });
+    const Channels c = makeChannels(
+        [](size_t i)
+        {
+            const float t = float(i / 4);
+            return i % 4 < 2 ? std::array<float, 4>{200 + 10 * t, 20, 10 * t, 255}
+                             : std::array<float, 4>{10, 60 + 20 * t, 250 - 30 * t, 255};
+        });
     EXPECT_LT(rootMeanSquare(c, throughBc7(c, false), 3), 3);
 }
 
 TEST(BlockEncode, AlphaByItself) // mode 5: four places for three colours and two alphas
 {
-    const Channels c = makeChannels([](size_t i) {
-        return std::array<float, 4>{40.0f + 60 * float(i % 4), 90, 20.0f + 30 * float(i % 4), i / 4 % 2 == 0 ? 255.0f : 0.0f};
-    });
+    const Channels c = makeChannels(
+        [](size_t i)
+        {
+            return std::array<float, 4>{40.0f + 60 * float(i % 4), 90, 20.0f + 30 * float(i % 4),
+                                        i / 4 % 2 == 0 ? 255.0f : 0.0f};
+        });
     const blocks::Texels got = throughBc7(c, true);
     EXPECT_LT(rootMeanSquare(c, got, 3), 2.5);
     for (size_t i = 0; i < 16; ++i)
@@ -131,9 +145,12 @@ TEST(BlockEncode, AnyBlockIsHeldBetterThanByItsMean)
     double error = 0, variance = 0;
     for (int n = 0; n < 500; ++n)
     {
-        const Channels c = makeChannels([&](size_t) {
-            return std::array<float, 4>{float(random() % 256), float(random() % 256), float(random() % 256), float(random() % 256)};
-        });
+        const Channels c = makeChannels(
+            [&](size_t)
+            {
+                return std::array<float, 4>{float(random() % 256), float(random() % 256), float(random() % 256),
+                                            float(random() % 256)};
+            });
         const double e = rootMeanSquare(c, throughBc7(c, n % 2 == 0), n % 2 == 0 ? 4 : 3);
         error += e * e;
         variance += 255.0 * 255 / 12;

@@ -79,7 +79,8 @@ TEST_F(CommandLine, EnvironmentOptionsAreRecordedAndItsErrorsNameIt)
     std::ofstream(folder_ / "cut.hdr", std::ios::binary) << "#?RADIANCE\n\n-Y 2 +X 4\n" << pixels.substr(1);
     const ProgramRun refused = runCompiler(scene() + " --env " + path("cut.hdr"));
     EXPECT_EQ(refused.code, 3);
-    EXPECT_TRUE(refused.output.find("cut.hdr: error: the HDR image is damaged in line 2 of 2") != std::string::npos) << refused.output;
+    EXPECT_TRUE(refused.output.find("cut.hdr: error: the HDR image is damaged in line 2 of 2") != std::string::npos)
+        << refused.output;
 }
 
 TEST_F(CommandLine, VersionAndHelpSucceed)

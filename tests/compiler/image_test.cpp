@@ -11,8 +11,9 @@ namespace
 std::vector<unsigned char> encodePng16(uint32_t width, uint32_t height, const std::vector<uint16_t>& words)
 {
     std::vector<unsigned char> png{0x89, 'P', 'N', 'G', '\r', '\n', 0x1A, '\n'};
-    const auto put32 = [](std::vector<unsigned char>& to, uint32_t v)
-    { to.insert(to.end(), {uint8_t(v >> 24), uint8_t(v >> 16), uint8_t(v >> 8), uint8_t(v)}); };
+    const auto put32 = [](std::vector<unsigned char>& to, uint32_t v) {
+        to.insert(to.end(), {uint8_t(v >> 24), uint8_t(v >> 16), uint8_t(v >> 8), uint8_t(v)});
+    };
     const auto chunk = [&](const char* name, const std::vector<unsigned char>& data)
     {
         put32(png, uint32_t(data.size()));
@@ -106,7 +107,10 @@ TEST(Images, DamagedOnesAreInvalidAndNamedWithAReason)
     const std::string text = "no picture";
     const std::vector<std::string> contents{std::string(png.begin(), png.begin() + 40),
                                             std::string(png.begin(), png.end() - 12), // without its last chunk
-                                            webp, text, "\xFF\xD8\xFF", ""};
+                                            webp,
+                                            text,
+                                            "\xFF\xD8\xFF",
+                                            ""};
     for (const std::string& content : contents)
     {
         const TemporaryFolder folder;
@@ -114,7 +118,8 @@ TEST(Images, DamagedOnesAreInvalidAndNamedWithAReason)
         const Error error = failure("bad.png", folder);
         EXPECT_EQ(error.code, ExitCode::kInvalid);
         EXPECT_NE(error.message.find("bad.png"), std::string::npos) << error.message;
-        EXPECT_NE(error.message.find("cannot be decoded: i"), std::string::npos) << error.message; // "it ...", "its ..."
+        EXPECT_NE(error.message.find("cannot be decoded: i"), std::string::npos)
+            << error.message; // "it ...", "its ..."
     }
 }
 
@@ -133,7 +138,8 @@ TEST(Images, APngOf16BitsKeepsThem)
 TEST(Images, AKtx2TextureIsFoundByItsExtension)
 {
     const std::vector<uint8_t> texels{1, 2, 3, 4, 5, 6, 7, 8};
-    const std::vector<std::byte> ktx2 = makeKtx2({.vk_format = 43, .width = 2, .height = 1}, std::as_bytes(std::span(texels)));
+    const std::vector<std::byte> ktx2 =
+        makeKtx2({.vk_format = 43, .width = 2, .height = 1}, std::as_bytes(std::span(texels)));
     const TemporaryFolder folder;
     writeBytes(folder / "t.ktx2", ktx2.data(), ktx2.size());
     GltfBuilder builder = withTextureFile("t.ktx2");
@@ -147,7 +153,8 @@ TEST(Images, AKtx2TextureIsFoundByItsExtension)
 TEST(Images, LightInAKtx2TextureOfFloatsIsEncodedWhereItIsColour)
 {
     const std::vector<float> light{0.5f, 0.0f, 1.0f, 0.5f};
-    const std::vector<std::byte> ktx2 = makeKtx2({.vk_format = 109, .width = 1, .height = 1}, std::as_bytes(std::span(light)));
+    const std::vector<std::byte> ktx2 =
+        makeKtx2({.vk_format = 109, .width = 1, .height = 1}, std::as_bytes(std::span(light)));
     const TemporaryFolder folder;
     writeBytes(folder / "t.ktx2", ktx2.data(), ktx2.size());
     const auto images = decode(withTextureFile("t.ktx2"), folder);
@@ -157,7 +164,8 @@ TEST(Images, LightInAKtx2TextureOfFloatsIsEncodedWhereItIsColour)
 
 TEST(Images, Ktx2OfAnotherFormatIsUnsupportedAndNamed)
 {
-    const std::vector<std::byte> ktx2 = makeKtx2({.vk_format = 158, .width = 4, .height = 4}, std::vector<std::byte>(16));
+    const std::vector<std::byte> ktx2 =
+        makeKtx2({.vk_format = 158, .width = 4, .height = 4}, std::vector<std::byte>(16));
     const TemporaryFolder folder;
     writeBytes(folder / "t.ktx2", ktx2.data(), ktx2.size());
     const Error error = failure("t.ktx2", folder);
@@ -169,10 +177,13 @@ TEST(Images, Ktx2OfAnotherFormatIsUnsupportedAndNamed)
 TEST(Images, OtherFormatsAreUnsupportedAndNamed)
 {
     using namespace std::string_literals;
-    const std::pair<std::string, const char*> formats[] = {
-        {"BM and more"s, "a BMP"},
-        {"GIF89a and more"s, "a GIF"},                      {"DDS | and more"s, "a DDS"},
-        {"\0\0\0\x20" "ftypavif"s, "an AVIF"},              {"II*\0 and more"s, "a TIFF"}};
+    const std::pair<std::string, const char*> formats[] = {{"BM and more"s, "a BMP"},
+                                                           {"GIF89a and more"s, "a GIF"},
+                                                           {"DDS | and more"s, "a DDS"},
+                                                           {"\0\0\0\x20"
+                                                            "ftypavif"s,
+                                                            "an AVIF"},
+                                                           {"II*\0 and more"s, "a TIFF"}};
     for (const auto& [content, name] : formats)
     {
         const TemporaryFolder folder;

@@ -13,8 +13,8 @@ struct Ktx2Header
     uint32_t width = 1, height = 1, depth = 0;
     uint32_t layers = 0, faces = 1, levels = 1;
     uint32_t supercompression = 0;
-    uint32_t color_model = 1;   // of the data format descriptor
-    uint64_t raw_bytes = 0;     // of the level; 0: as stored
+    uint32_t color_model = 1; // of the data format descriptor
+    uint64_t raw_bytes = 0;   // of the level; 0: as stored
 };
 
 inline std::vector<std::byte> makeKtx2(const Ktx2Header& h, std::span<const std::byte> level)
@@ -24,8 +24,8 @@ inline std::vector<std::byte> makeKtx2(const Ktx2Header& h, std::span<const std:
     std::vector<std::byte> file(kLevel + level.size());
     const auto put = [&](size_t at, auto value) { std::memcpy(file.data() + at, &value, sizeof(value)); };
     std::memcpy(file.data(), kIdentifier, sizeof(kIdentifier));
-    const uint32_t words[] = {h.vk_format, h.type_size, h.width, h.height, h.depth, h.layers, h.faces, h.levels,
-                              h.supercompression, kDescriptor, kDescriptorBytes};
+    const uint32_t words[] = {h.vk_format, h.type_size,        h.width,     h.height,        h.depth, h.layers, h.faces,
+                              h.levels,    h.supercompression, kDescriptor, kDescriptorBytes};
     std::memcpy(file.data() + sizeof(kIdentifier), words, sizeof(words));
     put(80, uint64_t(kLevel));
     put(88, uint64_t(level.size()));

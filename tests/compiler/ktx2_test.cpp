@@ -39,11 +39,13 @@ TEST(Ktx2, BytesOfOneToFourChannelsInEitherOrder)
 
 TEST(Ktx2, WordsAndFloatsKeepSixteenBitsAndAreClamped)
 {
-    const auto words = decode(makeKtx2({.vk_format = 91, .type_size = 2}, bytesOf(std::vector<uint16_t>{0x1234, 0, 0xffff, 0x8000})));
+    const auto words =
+        decode(makeKtx2({.vk_format = 91, .type_size = 2}, bytesOf(std::vector<uint16_t>{0x1234, 0, 0xffff, 0x8000})));
     ASSERT_TRUE(words);
     EXPECT_EQ(words->deep, (std::vector<uint16_t>{0x1234, 0, 0xffff, 0x8000}));
     EXPECT_FALSE(words->linear_light);
-    const auto halfs = decode(makeKtx2({.vk_format = 97}, bytesOf(std::vector<uint16_t>{0x3800, 0xbc00, 0x7c00, 0x7e00})));
+    const auto halfs =
+        decode(makeKtx2({.vk_format = 97}, bytesOf(std::vector<uint16_t>{0x3800, 0xbc00, 0x7c00, 0x7e00})));
     ASSERT_TRUE(halfs); // 0.5, -1, infinite, not a number
     EXPECT_EQ(halfs->deep, (std::vector<uint16_t>{32768, 0, 65535, 0}));
     EXPECT_TRUE(halfs->linear_light);
@@ -79,7 +81,7 @@ TEST(Ktx2, SidesNeedNotBeWholeBlocks)
     const std::vector<uint8_t> got = texelsOf({.vk_format = 139, .width = 5, .height = 6}, bytesOf(bc4));
     ASSERT_EQ(got.size(), 4u * 5 * 6);
     EXPECT_EQ(got[0], 10);
-    EXPECT_EQ(got[4 * 4], 20);          // (4, 0)
+    EXPECT_EQ(got[4 * 4], 20);           // (4, 0)
     EXPECT_EQ(got[4 * (5 * 5)], 30);     // (0, 5)
     EXPECT_EQ(got[4 * (5 * 5 + 4)], 40); // (4, 5)
 }
@@ -91,7 +93,8 @@ TEST(Ktx2, CompressedLevels)
     zstd.resize(ZSTD_compress(zstd.data(), zstd.size(), raw.data(), raw.size(), 3));
     uLongf size = compressBound(uLong(raw.size()));
     std::vector<std::byte> zlib(size);
-    compress(reinterpret_cast<Bytef*>(zlib.data()), &size, reinterpret_cast<const Bytef*>(raw.data()), uLong(raw.size()));
+    compress(reinterpret_cast<Bytef*>(zlib.data()), &size, reinterpret_cast<const Bytef*>(raw.data()),
+             uLong(raw.size()));
     zlib.resize(size);
     const std::vector<uint8_t> expected(raw.size(), 9);
     EXPECT_EQ(texelsOf({.width = 16, .height = 16, .supercompression = 2, .raw_bytes = raw.size()}, zstd), expected);
@@ -100,7 +103,8 @@ TEST(Ktx2, CompressedLevels)
     zlib[zlib.size() / 2] ^= std::byte{0xff};
     for (const auto& [scheme, bytes] : {std::pair(2u, zstd), std::pair(3u, zlib)})
     {
-        const auto image = decode(makeKtx2({.width = 16, .height = 16, .supercompression = scheme, .raw_bytes = raw.size()}, bytes));
+        const auto image =
+            decode(makeKtx2({.width = 16, .height = 16, .supercompression = scheme, .raw_bytes = raw.size()}, bytes));
         ASSERT_FALSE(image) << scheme;
         EXPECT_EQ(image.error().code, ExitCode::kInvalid);
     }
@@ -133,7 +137,8 @@ TEST(Ktx2, DamagedFilesAreInvalid)
     ASSERT_TRUE(decode(whole));
     for (size_t size = 12; size < whole.size(); size += 4)
         EXPECT_EQ(decode({whole.begin(), whole.begin() + ptrdiff_t(size)}).error().code, ExitCode::kInvalid) << size;
-    for (const auto& [offset, value] : {std::pair(20, 0), std::pair(20, 3), std::pair(36, 2), std::pair(40, 99), std::pair(80, 145), std::pair(87, 255), std::pair(88, 15)})
+    for (const auto& [offset, value] : {std::pair(20, 0), std::pair(20, 3), std::pair(36, 2), std::pair(40, 99),
+                                        std::pair(80, 145), std::pair(87, 255), std::pair(88, 15)})
     {
         std::vector<std::byte> damaged = whole; // width, faces, levels, the level's place and size
         damaged[size_t(offset)] = std::byte(value);

@@ -17,7 +17,9 @@ struct Room : GltfBuilder
         material({{"name", "floor"}});
         addQuad(0, 0, side);
         json["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 0.6}, {"znear", 0.01}}}}};
-        node({{"camera", 0}, {"translation", {0, 1.5 * side, 0}}, {"rotation", {-0.7071067811865476, 0, 0, 0.7071067811865476}}});
+        node({{"camera", 0},
+              {"translation", {0, 1.5 * side, 0}},
+              {"rotation", {-0.7071067811865476, 0, 0, 0.7071067811865476}}});
     }
 
     /// A square that faces down where it emits, else up.
@@ -25,8 +27,9 @@ struct Room : GltfBuilder
     {
         const float h = side / 2;
         const int p = positions({x - h, height, h, x + h, height, h, x + h, height, -h, x - h, height, -h});
-        const int indices = accessor(down ? std::vector<uint16_t>{0, 2, 1, 0, 3, 2} : std::vector<uint16_t>{0, 1, 2, 0, 2, 3},
-                                     "SCALAR", 5123, 6);
+        const int indices =
+            accessor(down ? std::vector<uint16_t>{0, 2, 1, 0, 3, 2} : std::vector<uint16_t>{0, 1, 2, 0, 2, 3}, "SCALAR",
+                     5123, 6);
         node({{"mesh", mesh({{"attributes", {{"POSITION", p}}}, {"indices", indices}, {"material", material_index}})}});
     }
     int glowing(float radiance)

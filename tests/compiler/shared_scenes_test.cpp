@@ -83,7 +83,8 @@ TEST(SharedScenesCompressed, EveryReadableChairHasTheSameSurface)
         GTEST_SKIP() << "shared scenes not found";
     const TemporaryFolder out;
     std::vector<uint64_t> triangles;
-    for (const char* name : {"chair.glb", "chair-draco.glb", "chair-meshopt.glb", "chair-quantized.glb", "chair-webp.glb"})
+    for (const char* name :
+         {"chair.glb", "chair-draco.glb", "chair-meshopt.glb", "chair-quantized.glb", "chair-webp.glb"})
     {
         const Result<CompileReport> report = compile({.input = folder / name, .output = out / "chair.lumi"});
         ASSERT_TRUE(report) << name << ": " << report.error().message;

@@ -74,8 +74,10 @@ TEST(TexturePages, AsManyTexelsPassTheAlphaTestInEveryLevel)
         uint32_t passing = 0;
         const uint32_t count = chain.width(level) * chain.height(level);
         for (uint32_t i = 0; i < count; ++i)
-            passing += std::round(chain.texel(level, i % chain.width(level), i / chain.width(level))[3]) >= 0.5f * 255 ? 1 : 0;
-        EXPECT_NEAR(double(passing) / count, 0.25, level < 3 ? 1.0 / 32 : 1.0 / 8) << level; // equal texels pass together
+            passing +=
+                std::round(chain.texel(level, i % chain.width(level), i / chain.width(level))[3]) >= 0.5f * 255 ? 1 : 0;
+        EXPECT_NEAR(double(passing) / count, 0.25, level < 3 ? 1.0 / 32 : 1.0 / 8)
+            << level; // equal texels pass together
     }
 }
 
@@ -120,7 +122,8 @@ TEST(TexturePages, LayersLieSideBySideInEveryLevel)
 
 TEST(TexturePages, OddSizesHalveRoundingDown)
 {
-    const TexturePages pages = rawPages({filled(5, 3, false, 7), filled(1, 4, false, 9)}, {TextureUse{0}, TextureUse{1}});
+    const TexturePages pages =
+        rawPages({filled(5, 3, false, 7), filled(1, 4, false, 9)}, {TextureUse{0}, TextureUse{1}});
     EXPECT_EQ(pages.pages[pages.refs[0].page].levels, 3u); // 5x3, 2x1, 1x1
     EXPECT_EQ(pages.pages[pages.refs[0].page].texels.size(), 4u * (15 + 2 + 1));
     EXPECT_EQ(pages.pages[pages.refs[1].page].texels.size(), 4u * (4 + 2 + 1));
@@ -131,8 +134,8 @@ TEST(TexturePages, OddSizesHalveRoundingDown)
 
 TEST(TexturePages, EqualImagesAreStoredOnce)
 {
-    const TexturePages pages =
-        rawPages({filled(4, 4, true, 1), filled(4, 4, true, 2), filled(4, 4, true, 1)}, {TextureUse{0}, TextureUse{1}, TextureUse{2}});
+    const TexturePages pages = rawPages({filled(4, 4, true, 1), filled(4, 4, true, 2), filled(4, 4, true, 1)},
+                                        {TextureUse{0}, TextureUse{1}, TextureUse{2}});
     ASSERT_EQ(pages.pages.size(), 1u);
     EXPECT_EQ(pages.pages[0].layers, 2u);
     EXPECT_EQ(pages.refs[0].layer, pages.refs[2].layer);
@@ -156,7 +159,8 @@ TEST(TexturePages, MoreSizesThanPagesKeepThemInTiles)
     {
         const gpu::TextureRef& ref = pages.refs[i];
         const TexturePage& page = pages.pages[ref.page];
-        EXPECT_EQ(page.encoding, i % 2 == 0 ? package::TextureEncoding::Rgba8Srgb : package::TextureEncoding::Rgba8Unorm);
+        EXPECT_EQ(page.encoding,
+                  i % 2 == 0 ? package::TextureEncoding::Rgba8Srgb : package::TextureEncoding::Rgba8Unorm);
         EXPECT_EQ(ref.size, (8 + i) | 8 << 16);
         EXPECT_EQ((ref.sampling & gpu::kSampleTile) != 0, page.tiled);
         if (!page.tiled)
@@ -164,10 +168,12 @@ TEST(TexturePages, MoreSizesThanPagesKeepThemInTiles)
         ++tiles;
         for (uint32_t level = 0; level < 4; ++level) // with its border
         {
-            const uint32_t x = gpu::tileLevelX(ref.origin & 0xffff, 8 + i, level), y = gpu::tileLevelY(ref.origin >> 16, 8, level);
+            const uint32_t x = gpu::tileLevelX(ref.origin & 0xffff, 8 + i, level),
+                           y = gpu::tileLevelY(ref.origin >> 16, 8, level);
             for (uint32_t dy = 0; dy < gpu::levelSide(8, level) + 2; ++dy)
                 for (uint32_t dx = 0; dx < gpu::levelSide(8 + i, level) + 2; ++dx)
-                    ASSERT_EQ(page.texels[4 * ((size_t(ref.layer) * page.height + y + dy) * page.width + x + dx)], 5 * i);
+                    ASSERT_EQ(page.texels[4 * ((size_t(ref.layer) * page.height + y + dy) * page.width + x + dx)],
+                              5 * i);
         }
     }
     EXPECT_EQ(tiles, 40 - (gpu::kTexturePageCount - 2));
@@ -184,7 +190,8 @@ TEST(TexturePages, TilesDoNotOverlap)
     {
         const TileSize extent = tileExtent(sizes[i]);
         const TilePlace& p = layout.places[i];
-        ASSERT_TRUE(p.x % 4 == 0 && p.y % 4 == 0 && p.x + extent.width <= layout.width && p.y + extent.height <= layout.height);
+        ASSERT_TRUE(p.x % 4 == 0 && p.y % 4 == 0 && p.x + extent.width <= layout.width &&
+                    p.y + extent.height <= layout.height);
         for (uint32_t y = p.y; y < p.y + extent.height; ++y)
             for (uint32_t x = p.x; x < p.x + extent.width; ++x)
             {
@@ -202,7 +209,8 @@ TEST(TexturePages, BlocksFitWhatMaterialsRead)
     m.transmission_texture = 1;
     m.metallic_roughness_texture = 2;
     m.base_color_texture = 3;
-    std::vector<TextureImage> images{filled(8, 8, false, 128), filled(8, 8, false, 60), filled(8, 8, false, 70), filled(6, 5, true, 80)};
+    std::vector<TextureImage> images{filled(8, 8, false, 128), filled(8, 8, false, 60), filled(8, 8, false, 70),
+                                     filled(6, 5, true, 80)};
     const std::vector<TextureUse> uses{TextureUse{0}, TextureUse{1}, TextureUse{2}, TextureUse{3}};
     const TexturePages pages = buildTexturePages(images, uses, std::span(&m, 1), TextureCompression::kBlocks);
     const auto encoding = [&](size_t use) { return pages.pages[pages.refs[use].page].encoding; };
@@ -219,7 +227,8 @@ TEST(TexturePages, NormalsThatLookIntoTheSurfaceKeepThreeChannels)
     gpu::Material m = package::defaultMaterial();
     m.normal_texture = 0;
     std::vector<TextureImage> images{filled(8, 8, false, 100)}; // z below 0
-    const TexturePages pages = buildTexturePages(images, {TextureUse{0}}, std::span(&m, 1), TextureCompression::kBlocks);
+    const TexturePages pages =
+        buildTexturePages(images, {TextureUse{0}}, std::span(&m, 1), TextureCompression::kBlocks);
     EXPECT_EQ(pages.pages[0].encoding, package::TextureEncoding::Bc7Unorm);
     EXPECT_EQ(pages.refs[0].sampling & gpu::kSampleNormalXy, 0u);
 }

@@ -74,7 +74,8 @@ private:
             NodeBox inside = box;
             for (size_t axis = 0; axis < 3; ++axis)
             {
-                float a = std::lerp(box.low[axis], box.high[axis], unit()), b = std::lerp(box.low[axis], box.high[axis], unit());
+                float a = std::lerp(box.low[axis], box.high[axis], unit()),
+                      b = std::lerp(box.low[axis], box.high[axis], unit());
                 if (below(4) == 0) // touches its node's side, or has no width
                     a = box.low[axis];
                 if (below(8) == 0)
@@ -88,7 +89,9 @@ private:
                 planes.at[2 * axis][c] = present ? inside.low[axis] : std::numeric_limits<float>::max();
                 planes.at[2 * axis + 1][c] = present ? inside.high[axis] : std::numeric_limits<float>::lowest();
             }
-            planes.child[c] = !present ? gpu::kNone : levels == 0 || below(3) == 0 ? addLeaf() : addNode(inside, levels - 1);
+            planes.child[c] = !present                       ? gpu::kNone
+                              : levels == 0 || below(3) == 0 ? addLeaf()
+                                                             : addNode(inside, levels - 1);
         }
         nodes[index] = std::bit_cast<gpu::BvhNode>(planes);
         return index;
@@ -114,7 +117,8 @@ std::vector<std::byte> write(const package::StoredGeometry& geometry, const gpu:
 }
 
 /// Boxes hold those that were written and exceed them by less than two steps of the box around them, or by rounding.
-void expectBoxes(std::span<const gpu::BvhNode> read, std::span<const gpu::BvhNode> written, uint32_t index, const NodeBox& around)
+void expectBoxes(std::span<const gpu::BvhNode> read, std::span<const gpu::BvhNode> written, uint32_t index,
+                 const NodeBox& around)
 {
     const auto now = std::bit_cast<NodePlanes>(read[index]), was = std::bit_cast<NodePlanes>(written[index]);
     ASSERT_EQ(now.child, was.child);
@@ -145,7 +149,8 @@ void expectBoxes(std::span<const gpu::BvhNode> read, std::span<const gpu::BvhNod
 
 TEST(FoldGeometry, ComesBackAsItWasWithBoxesAtMostALittleLarger)
 {
-    for (const auto& [scale, offset] : {std::pair(1.0f, 0.0f), std::pair(1000.0f, -500.0f), std::pair(0.125f, 4096.0f), std::pair(1e-3f, 0.0f)})
+    for (const auto& [scale, offset] :
+         {std::pair(1.0f, 0.0f), std::pair(1000.0f, -500.0f), std::pair(0.125f, 4096.0f), std::pair(1e-3f, 0.0f)})
         for (uint32_t seed = 0; seed < 4; ++seed)
         {
             const RandomGeometry made(seed, scale, offset);
@@ -157,9 +162,13 @@ TEST(FoldGeometry, ComesBackAsItWasWithBoxesAtMostALittleLarger)
             ASSERT_EQ(package->bvhNodes().size(), made.nodes.size());
             expectBoxes(package->bvhNodes(), made.nodes, 0, package::rootBox(made.low, made.high));
             ASSERT_EQ(package->bvhTriangles().size(), made.leaf_triangles.size());
-            EXPECT_EQ(std::memcmp(package->bvhTriangles().data(), made.leaf_triangles.data(), package->bvhTriangles().size_bytes()), 0);
+            EXPECT_EQ(std::memcmp(package->bvhTriangles().data(), made.leaf_triangles.data(),
+                                  package->bvhTriangles().size_bytes()),
+                      0);
             ASSERT_EQ(package->vertexAttributes().size(), made.attributes.size());
-            EXPECT_EQ(std::memcmp(package->vertexAttributes().data(), made.attributes.data(), package->vertexAttributes().size_bytes()), 0);
+            EXPECT_EQ(std::memcmp(package->vertexAttributes().data(), made.attributes.data(),
+                                  package->vertexAttributes().size_bytes()),
+                      0);
         }
 }
 
@@ -173,7 +182,9 @@ TEST(FoldGeometry, KeepsSecondCoordinatesAndColoursWhereAVertexHasThem)
     const auto package = package::Package::openBytes(bytes);
     ASSERT_TRUE(package) << package.error().message;
     ASSERT_EQ(package->vertexAttributes().size(), made.attributes.size());
-    EXPECT_EQ(std::memcmp(package->vertexAttributes().data(), made.attributes.data(), package->vertexAttributes().size_bytes()), 0);
+    EXPECT_EQ(std::memcmp(package->vertexAttributes().data(), made.attributes.data(),
+                          package->vertexAttributes().size_bytes()),
+              0);
 }
 
 TEST(FoldGeometry, StepsNeverLeaveAPlaneOutside)

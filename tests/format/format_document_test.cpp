@@ -24,7 +24,8 @@ std::vector<std::string> fieldRows()
     std::vector<std::string> rows;
 #define NUMBER(word, type, name, default_, least, most, meaning) \
     rows.push_back(fmt::format("| {} | {} | {} | {} | {} |", 4 * word, #type, #name, range(least, most), meaning));
-#define FLAGS(word, name, meaning) rows.push_back(fmt::format("| {} | u32 | {} | known bits | {} |", 4 * word, #name, meaning));
+#define FLAGS(word, name, meaning) \
+    rows.push_back(fmt::format("| {} | u32 | {} | known bits | {} |", 4 * word, #name, meaning));
 #define TEXTURE(word, name, encoding, channels, feature, meaning) \
     rows.push_back(fmt::format("| {} | u32 | {} | in TREF or `FFFFFFFF` | {}{} |", 4 * word, #name, meaning, \
                                gpu::encoding == gpu::kEncodingSrgb ? ", sRGB" : ""));

@@ -41,7 +41,10 @@ struct ContentCase
     const char* words; // that the message must hold
     std::function<void(SamplePackage&)> spoil;
 };
-void PrintTo(const ContentCase& c, std::ostream* out) { *out << c.name; }
+void PrintTo(const ContentCase& c, std::ostream* out)
+{
+    *out << c.name;
+}
 
 // clang-format off
 const ContentCase kContentCases[] = {
@@ -198,7 +201,10 @@ struct ShellCase
     const char* words;
     std::function<void(package::Header&, std::vector<package::ChunkEntry>&)> spoil;
 };
-void PrintTo(const ShellCase& c, std::ostream* out) { *out << c.name; }
+void PrintTo(const ShellCase& c, std::ostream* out)
+{
+    *out << c.name;
+}
 
 constexpr uint32_t kUnknownChunk = package::fourcc("ZZZZ");
 

@@ -16,7 +16,10 @@ void expectSame(std::span<const T> read, const std::vector<T>& written)
     EXPECT_EQ(std::memcmp(read.data(), written.data(), read.size_bytes()), 0);
 }
 
-bool same(const gpu::vec3& a, const gpu::vec3& b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
+bool same(const gpu::vec3& a, const gpu::vec3& b)
+{
+    return a.x == b.x && a.y == b.y && a.z == b.z;
+}
 
 /// Triangle i of the sample is entry i of chunk LEAF.
 void expectGeometry(const package::Package& package, const SamplePackage& sample)
@@ -28,7 +31,9 @@ void expectGeometry(const package::Package& package, const SamplePackage& sample
         const gpu::BvhTriangle& t = package.bvhTriangles()[i];
         EXPECT_EQ(t.triangle, i);
         EXPECT_EQ(t.material | t.flags << 30, sample.triangles[i].material);
-        EXPECT_TRUE(same(t.v0, sample.positions[3 * i]) && same(t.v1, sample.positions[3 * i + 1]) && same(t.v2, sample.positions[3 * i + 2])) << i;
+        EXPECT_TRUE(same(t.v0, sample.positions[3 * i]) && same(t.v1, sample.positions[3 * i + 1]) &&
+                    same(t.v2, sample.positions[3 * i + 2]))
+            << i;
         EXPECT_EQ(package.triangles()[i].vertices.y, 3 * i + 1);
         EXPECT_EQ(package.triangles()[i].light, i == 1 && !sample.lights.empty() ? 1 : gpu::kNone);
     }

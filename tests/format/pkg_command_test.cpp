@@ -174,7 +174,8 @@ TEST_F(PkgCommand, ExtractWritesThingsAsOtherProgramsReadThem)
     EXPECT_EQ(json["materials"].size(), package->materials().size());
 
     ASSERT_EQ(run("extract good.lumi VATT -o v.bin"), 0) << err;
-    EXPECT_EQ(std::filesystem::file_size(folder.path() / "v.bin"), package->vertexAttributes().size() * sizeof(package::StoredVertex));
+    EXPECT_EQ(std::filesystem::file_size(folder.path() / "v.bin"),
+              package->vertexAttributes().size() * sizeof(package::StoredVertex));
     ASSERT_EQ(run("extract good.lumi texture/0/0 -o t.png"), 0) << err;
     EXPECT_EQ(readText(folder.path() / "t.png").substr(1, 3), "PNG");
     ASSERT_EQ(run("extract good.lumi environment -o e.exr"), 0) << err;

@@ -88,12 +88,14 @@ SamplePackage::SamplePackage()
     for (uint32_t i = 0; i < 5; ++i)
     {
         const float z = float(i) / 5;
-        triangles.push_back({{3 * i, 3 * i + 1, 3 * i + 2}, material_of[i] | flags_of[i] << package::kTriangleFlagsShift});
+        triangles.push_back(
+            {{3 * i, 3 * i + 1, 3 * i + 2}, material_of[i] | flags_of[i] << package::kTriangleFlagsShift});
         positions.insert(positions.end(), {{0, 0, z}, {1, 0, z}, {0, 1, z}});
         vertices.insert(vertices.end(), 3, {1, 2, {0, 0}});
         extras.insert(extras.end(), 3, {{1, 1}, {0x3c003c00, 0x3c003c00}});
     }
-    texture_refs = {{0, 0, 0, 0, kFourByFour, {1, 0, 0}, {0, 1, 0}}, {0, 1, gpu::kSampleUv1, 0, kFourByFour, {1, 0, 0}, {0, 1, 0}}};
+    texture_refs = {{0, 0, 0, 0, kFourByFour, {1, 0, 0}, {0, 1, 0}},
+                    {0, 1, gpu::kSampleUv1, 0, kFourByFour, {1, 0, 0}, {0, 1, 0}}};
     texture_pages = {std::vector<std::byte>((16 + 4 + 1) * 2 * 4, std::byte{0x55})};
     lights = {light(gpu::kLightPoint, 0.25f), light(gpu::kLightTriangle, 0.25f), light(gpu::kLightEnvironment, 0.5f)};
     lights[1].triangle = 1;

@@ -5,7 +5,8 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size)
 {
-    const std::vector<Camera> cameras = {{.name = "hall"}, {.name = "plan", .vertical_fov = 0, .orthographic_height = 2}};
+    const std::vector<Camera> cameras = {{.name = "hall"},
+                                         {.name = "plan", .vertical_fov = 0, .orthographic_height = 2}};
     const auto path = CameraPath::parse({reinterpret_cast<const char*>(data), size}, cameras);
     if (!path)
         return 0;
@@ -15,7 +16,8 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size)
         const Camera camera = path->at(time);
         const Vec3d forward = toDouble(camera.forward), up = toDouble(camera.up);
         check(isFinite(toDouble(camera.position)), "position at {}", time);
-        check(std::abs(length(forward) - 1) < 1e-5 && std::abs(length(up) - 1) < 1e-5 && std::abs(dot(forward, up)) < 1e-5,
+        check(std::abs(length(forward) - 1) < 1e-5 && std::abs(length(up) - 1) < 1e-5 &&
+                  std::abs(dot(forward, up)) < 1e-5,
               "axes at {}", time);
         check((camera.vertical_fov > 0) != (camera.orthographic_height > 0), "lens at {}", time);
     }

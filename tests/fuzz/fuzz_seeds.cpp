@@ -172,10 +172,10 @@ void saveSettings(const fs::path& folder)
     {
         std::string text = preset;
         for (const Setting& setting : allSettings())
-            text +=
-                fmt::format("\n{}={}\n{}={}", setting.name,
-                            setting.choices.empty() ? fmt::format("{}", setting.least) : setting.choices.front().name, setting.name,
-                            setting.choices.empty() ? fmt::format("{}", setting.most) : setting.choices.back().name);
+            text += fmt::format(
+                "\n{}={}\n{}={}", setting.name,
+                setting.choices.empty() ? fmt::format("{}", setting.least) : setting.choices.front().name, setting.name,
+                setting.choices.empty() ? fmt::format("{}", setting.most) : setting.choices.back().name);
         save(folder / preset, text.data(), text.size());
     }
     const std::string wrong = "default\nphotons.count=-1\nexposure=nan\nexposure=1e999\n=\nterm=\n";
@@ -185,7 +185,8 @@ void saveSettings(const fs::path& folder)
 /// Camera paths with every member that a key may have.
 void savePaths(const fs::path& folder)
 {
-    const std::string path = R"({"schema": "lumicut-path/1", "keys": [{"time": -1.5, "camera": "hall"}, {"time": 0, "camera": 1},
+    const std::string path =
+        R"({"schema": "lumicut-path/1", "keys": [{"time": -1.5, "camera": "hall"}, {"time": 0, "camera": 1},
         {"time": 2, "position": [1, 2, -3e2], "forward": [0, 1, 0], "up": [1, 0, 0], "vertical_fov": 0.7, "near_plane": 0.1,
          "far_plane": 20}, {"time": 2.5, "position": [0, 0, 0], "forward": [-1, 0, 1], "orthographic_height": 3}]})";
     save(folder / "path.json", path.data(), path.size());
@@ -201,10 +202,12 @@ void saveTextures(const fs::path& folder)
         uint32_t vk_format;
         size_t level_bytes; // of 5 x 3 texels
     };
-    for (const Seed& seed : {Seed{9, 15}, Seed{29, 45}, Seed{43, 60}, Seed{91, 120}, Seed{97, 120}, Seed{109, 240}, Seed{133, 16},
-                             Seed{135, 32}, Seed{137, 32}, Seed{139, 16}, Seed{141, 32}, Seed{145, 32}, Seed{0, 32}})
+    for (const Seed& seed :
+         {Seed{9, 15}, Seed{29, 45}, Seed{43, 60}, Seed{91, 120}, Seed{97, 120}, Seed{109, 240}, Seed{133, 16},
+          Seed{135, 32}, Seed{137, 32}, Seed{139, 16}, Seed{141, 32}, Seed{145, 32}, Seed{0, 32}})
         save(folder / fmt::format("{}.ktx2", seed.vk_format),
-             makeKtx2({.vk_format = seed.vk_format, .width = 5, .height = 3}, std::vector<std::byte>(seed.level_bytes, std::byte{0x42})));
+             makeKtx2({.vk_format = seed.vk_format, .width = 5, .height = 3},
+                      std::vector<std::byte>(seed.level_bytes, std::byte{0x42})));
 }
 } // namespace
 
@@ -216,13 +219,9 @@ int main(int argc, char** argv)
         return int(ExitCode::kUsage);
     }
     const fs::path folder = argv[1];
-    const std::pair<const char*, void (*)(const fs::path&)> kinds[] = {{"package", savePackages},
-                                                                       {"hdr", saveHdrs},
-                                                                       {"exr", saveExrs},
-                                                                       {"gltf", saveScenes},
-                                                                       {"ktx2", saveTextures},
-                                                                       {"path", savePaths},
-                                                                       {"settings", saveSettings}};
+    const std::pair<const char*, void (*)(const fs::path&)> kinds[] = {
+        {"package", savePackages}, {"hdr", saveHdrs},   {"exr", saveExrs},         {"gltf", saveScenes},
+        {"ktx2", saveTextures},    {"path", savePaths}, {"settings", saveSettings}};
     for (const auto& [name, saveAll] : kinds)
     {
         std::error_code error;

@@ -271,13 +271,14 @@ TEST(ExrPicture, WhatHasNoColourOrNoSizeIsRefused)
 /// gigabytes among them.
 TEST(ExrPicture, AttributesOfAnotherLengthThanTheirTypesAreRefused)
 {
-    const std::vector<std::byte> whole = writeExr({{.data = kWindow, .display = kWindow, .channels = rgbChannels(pattern)}});
+    const std::vector<std::byte> whole =
+        writeExr({{.data = kWindow, .display = kWindow, .channels = rgbChannels(pattern)}});
     for (const std::string type : {"chlist", "compression", "box2i", "lineOrder", "float", "v2f"})
     {
         std::vector<std::byte> file = whole;
         const std::string text = type + '\0'; // the last of them: an attribute may be named as its type
         const auto found = std::find_end(file.begin(), file.end(), text.begin(), text.end(),
-                                       [](std::byte a, char b) { return a == std::byte(b); });
+                                         [](std::byte a, char b) { return a == std::byte(b); });
         ASSERT_NE(found, file.end()) << type;
         std::byte& size = *(found + ptrdiff_t(text.size()));
         size = std::byte(uint8_t(size) + 1);

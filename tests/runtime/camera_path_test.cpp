@@ -107,7 +107,8 @@ TEST(CameraPath, AFastMoveIsNotCarriedOnIntoASlowOne)
     {
         const double x = path.at(time).position.x;
         EXPECT_GE(x, 0) << time;
-        EXPECT_LE(x, 5 + (5 + 1) / 3.0) << time; // a curve's control points lie a third of the two ways around a key from it
+        EXPECT_LE(x, 5 + (5 + 1) / 3.0)
+            << time; // a curve's control points lie a third of the two ways around a key from it
     }
 }
 

@@ -22,24 +22,28 @@ protected:
     /// RGBA8 of kSide x kSide texels, as the device decodes them.
     static std::vector<uint8_t> decodedByDevice(VkFormat format, const std::vector<std::byte>& bytes)
     {
-        const Image from = device().uploadImage("test.blocks", {.format = format, .width = kSide, .height = kSide}, bytes);
+        const Image from =
+            device().uploadImage("test.blocks", {.format = format, .width = kSide, .height = kSide}, bytes);
         const Image to = device().uploadImage("test.texels", {.width = kSide, .height = kSide},
                                               std::vector<std::byte>(size_t(4) * kSide * kSide));
         const Buffer texels = device().readback("test.readback", uint64_t(4) * kSide * kSide);
-        submit([&](VkCommandBuffer commands) {
-            move(commands, from, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
-            move(commands, to, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
-            const VkImageSubresourceLayers whole{VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
-            const VkImageBlit blit{.srcSubresource = whole,
-                                   .srcOffsets = {{0, 0, 0}, {int32_t(kSide), int32_t(kSide), 1}},
-                                   .dstSubresource = whole,
-                                   .dstOffsets = {{0, 0, 0}, {int32_t(kSide), int32_t(kSide), 1}}};
-            vkCmdBlitImage(commands, from.handle(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, to.handle(),
-                           VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &blit, VK_FILTER_NEAREST);
-            move(commands, to, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
-            const VkBufferImageCopy copy{.imageSubresource = whole, .imageExtent = {kSide, kSide, 1}};
-            vkCmdCopyImageToBuffer(commands, to.handle(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, texels.handle(), 1, &copy);
-        });
+        submit(
+            [&](VkCommandBuffer commands)
+            {
+                move(commands, from, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
+                move(commands, to, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
+                const VkImageSubresourceLayers whole{VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+                const VkImageBlit blit{.srcSubresource = whole,
+                                       .srcOffsets = {{0, 0, 0}, {int32_t(kSide), int32_t(kSide), 1}},
+                                       .dstSubresource = whole,
+                                       .dstOffsets = {{0, 0, 0}, {int32_t(kSide), int32_t(kSide), 1}}};
+                vkCmdBlitImage(commands, from.handle(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, to.handle(),
+                               VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &blit, VK_FILTER_NEAREST);
+                move(commands, to, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
+                const VkBufferImageCopy copy{.imageSubresource = whole, .imageExtent = {kSide, kSide, 1}};
+                vkCmdCopyImageToBuffer(commands, to.handle(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, texels.handle(), 1,
+                                       &copy);
+            });
         return device().download<uint8_t>(texels, size_t(4) * kSide * kSide);
     }
 
@@ -98,8 +102,8 @@ std::vector<std::byte> randomBytes(size_t count)
 
 /// @param tolerance steps of 255 @param channels that are compared
 template <size_t Bytes, typename Decode>
-void expectSame(const std::vector<std::byte>& bytes, const std::vector<uint8_t>& expected, int tolerance, size_t channels,
-                const Decode& decode)
+void expectSame(const std::vector<std::byte>& bytes, const std::vector<uint8_t>& expected, int tolerance,
+                size_t channels, const Decode& decode)
 {
     for (size_t b = 0; b < kAcross * kAcross; ++b)
     {
@@ -109,7 +113,8 @@ void expectSame(const std::vector<std::byte>& bytes, const std::vector<uint8_t>&
             {
                 const size_t x = b % kAcross * 4 + i % 4, y = b / kAcross * 4 + i / 4;
                 ASSERT_NEAR(texels[i][c], expected[4 * (y * kSide + x) + c], tolerance)
-                    << "block " << b << ", first byte " << int(bytes[Bytes * b]) << ", texel " << i << ", channel " << c;
+                    << "block " << b << ", first byte " << int(bytes[Bytes * b]) << ", texel " << i << ", channel "
+                    << c;
             }
     }
 }
@@ -120,7 +125,8 @@ TEST_F(BlockImage, Bc7IsDecodedAsTheDeviceDoesInEveryMode)
         GTEST_SKIP() << "the device cannot copy from BC7";
     std::vector<std::byte> bytes = randomBytes(16 * kAcross * kAcross);
     for (size_t b = 0; b < kAcross * kAcross; ++b) // every mode, and the reserved one, as often as any
-        bytes[16 * b] = b % 9 == 8 ? std::byte(0) : (bytes[16 * b] & std::byte(0xff << (b % 9 + 1))) | std::byte(1 << (b % 9));
+        bytes[16 * b] =
+            b % 9 == 8 ? std::byte(0) : (bytes[16 * b] & std::byte(0xff << (b % 9 + 1))) | std::byte(1 << (b % 9));
     const std::vector<uint8_t> expected = decodedByDevice(VK_FORMAT_BC7_UNORM_BLOCK, bytes);
     expectSame<16>(bytes, expected, 0, 4, blocks::decodeBc7); // the format leaves no room for rounding
 }

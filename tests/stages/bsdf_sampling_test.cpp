@@ -96,19 +96,20 @@ class BsdfSampling : public Sampling
 protected:
     std::vector<gpu::BsdfDraw> drawn(const Lobes& m, gpu::vec3 wo, bool visible_normals)
     {
-        return draw<gpu::BsdfDraw>(testKernel("draw/bsdf"), anyScene(),
-                                   gpu::BsdfDrawParams{.count = kDraws,
-                                                            .seed = ++seed_,
-                                                            .what = visible_normals ? gpu::kDrawVisibleNormals : gpu::kDrawDirections,
-                                                            .front = m.front ? 1u : 0u,
-                                                            .flags = m.thin ? gpu::kMaterialThin : 0u,
-                                                            .base_color = 1,
-                                                            .metallic = float(m.metallic),
-                                                            .roughness = float(m.roughness),
-                                                            .transmission = float(m.transmission),
-                                                            .specular = float(m.specular),
-                                                            .ior = float(m.ior),
-                                                            .wo = wo});
+        return draw<gpu::BsdfDraw>(
+            testKernel("draw/bsdf"), anyScene(),
+            gpu::BsdfDrawParams{.count = kDraws,
+                                .seed = ++seed_,
+                                .what = visible_normals ? gpu::kDrawVisibleNormals : gpu::kDrawDirections,
+                                .front = m.front ? 1u : 0u,
+                                .flags = m.thin ? gpu::kMaterialThin : 0u,
+                                .base_color = 1,
+                                .metallic = float(m.metallic),
+                                .roughness = float(m.roughness),
+                                .transmission = float(m.transmission),
+                                .specular = float(m.specular),
+                                .ior = float(m.ior),
+                                .wo = wo});
     }
 
     /// Cells of the directions above the surface, of those below it, and what was absorbed.
@@ -155,8 +156,8 @@ protected:
         EXPECT_LE(worst, 1) << what;
     }
 
-    static ChiSquared against(const std::vector<gpu::BsdfDraw>& draws,
-                              const std::function<double(Double3)>& density, const Grid& grid)
+    static ChiSquared against(const std::vector<gpu::BsdfDraw>& draws, const std::function<double(Double3)>& density,
+                              const Grid& grid)
     {
         std::vector<double> counts(grid.absorbedCell() + 1);
         for (const gpu::BsdfDraw& d : draws)
@@ -341,7 +342,8 @@ TEST_F(Sampling, AimedGatheringRaysGoWhereLegsSay)
     }
     ChiSquaredTests tests;
     tests.add("cells", chiSquared(found, expected));
-    tests.add("places within", chiSquared(within, std::vector<double>(within.size(), double(kDraws) / double(within.size()))));
+    tests.add("places within",
+              chiSquared(within, std::vector<double>(within.size(), double(kDraws) / double(within.size()))));
     tests.expectAll();
     // The weights' mean is 1; none is above 1 / (1 - kAimMost), and so is no deviation of one.
     EXPECT_NEAR(weights / kDraws, 1, 4 / (1 - gpu::kAimMost) / std::sqrt(double(kDraws)));

@@ -163,9 +163,7 @@ TEST_F(CutsAtAWall, LightNothingBehindIt)
                [&](Recorder& rec)
                {
                    const auto cut = stage.record(rec, of.rays, *of.gpu, in);
-                   gather.record(rec, of.rays,
-                                 {.size = size, .samples = on_gpu, .spheres = spheres},
-                                 *of.gpu, cut,
+                   gather.record(rec, of.rays, {.size = size, .samples = on_gpu, .spheres = spheres}, *of.gpu, cut,
                                  {.mode = in.mode,
                                   .ray_count = rays,
                                   .specular_depth = 0,

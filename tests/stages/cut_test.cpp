@@ -39,9 +39,8 @@ protected:
 
     std::unique_ptr<PhotonMap> roomMap(uint32_t paths)
     {
-        return mapOf(*scene_,
-                     emit(*scene_, PhotonKind::kGlobal,
-                          {.path_count = paths, .first_path = 0, .seed = 5, .bounce_limit = 3}));
+        return mapOf(*scene_, emit(*scene_, PhotonKind::kGlobal,
+                                   {.path_count = paths, .first_path = 0, .seed = 5, .bounce_limit = 3}));
     }
 
     std::vector<gpu::CutNode> cutOf(const PhotonMap& map, const CutStage::Input& in)
@@ -301,9 +300,7 @@ TEST_F(Cuts, AreReadNearlyAsDensityIsEstimated)
                [&](Recorder& rec)
                {
                    const auto cut = stage.record(rec, map->rays, *map->gpu, in);
-                   gather.record(rec, map->rays,
-                                 {.size = size, .samples = on_gpu, .spheres = spheres},
-                                 *map->gpu, cut,
+                   gather.record(rec, map->rays, {.size = size, .samples = on_gpu, .spheres = spheres}, *map->gpu, cut,
                                  {.mode = mode,
                                   .ray_count = kRays,
                                   .specular_depth = 0,

@@ -146,9 +146,12 @@ TEST(ApplySetting, ReachesEverySettingFromItsLeastToItsMost)
                 continue;
             }
             ASSERT_TRUE(status) << status.error().message;
-            std::visit([&](auto member)
-                       { EXPECT_EQ(settings.*member, std::remove_reference_t<decltype(settings.*member)>(value)) << setting.name; },
-                       setting.member);
+            std::visit(
+                [&](auto member) {
+                    EXPECT_EQ(settings.*member, std::remove_reference_t<decltype(settings.*member)>(value))
+                        << setting.name;
+                },
+                setting.member);
         }
     Settings settings;
     for (const auto& [name, value] : {std::pair("srgb", 0u), std::pair("aces", 1u), std::pair("agx", 2u)})
@@ -160,7 +163,8 @@ TEST(ApplySetting, ReachesEverySettingFromItsLeastToItsMost)
         for (const Choice& choice : setting.choices)
         {
             ASSERT_TRUE(applySetting(settings, fmt::format("{}={}", setting.name, choice.name)));
-            EXPECT_EQ(settings.*std::get<uint32_t Settings::*>(setting.member), choice.value) << setting.name << "=" << choice.name;
+            EXPECT_EQ(settings.*std::get<uint32_t Settings::*>(setting.member), choice.value)
+                << setting.name << "=" << choice.name;
         }
     for (const auto& [name, value] : {std::pair("all", gpu::kTermAll), std::pair("emission", gpu::kTermEmission),
                                       std::pair("direct", gpu::kTermDirect), std::pair("caustics", gpu::kTermCaustics),
@@ -195,7 +199,8 @@ TEST(ApplySetting, NamesTheRangeOfAValueOutsideIt)
         for (const std::string value : {"", "x", "1x", "nan", "inf", "1 ", "--1", "1,5"})
             expectSettingRefused(fmt::format("{}={}", setting.name, value), {std::string(setting.name), range});
         if (std::holds_alternative<uint32_t Settings::*>(setting.member))
-            expectSettingRefused(fmt::format("{}={}", setting.name, setting.least + 0.5), {"a whole number in " + range});
+            expectSettingRefused(fmt::format("{}={}", setting.name, setting.least + 0.5),
+                                 {"a whole number in " + range});
     }
 }
 

@@ -11,8 +11,8 @@ constexpr double kAlbedo = 0.5;
 TEST(LightGroups, PickEachLightByItsShareOfTheGroup)
 {
     const std::vector<LightProbability> lights{{gpu::kLightDirectional, 0.3f}, {gpu::kLightPoint, 0.125f},
-                                         {gpu::kLightTriangle, 0.25f},   {gpu::kLightSpot, 0},
-                                         {gpu::kLightPoint, 0.125f},     {gpu::kLightEnvironment, 0.2f}};
+                                               {gpu::kLightTriangle, 0.25f},   {gpu::kLightSpot, 0},
+                                               {gpu::kLightPoint, 0.125f},     {gpu::kLightEnvironment, 0.2f}};
     const std::vector<double> shares{0.3, 0.2, 0.5}; // of directional, environment and local lights
     const LightGroups result = groupLights(lights);
     ASSERT_EQ(result.groups.size(), 3u);
@@ -64,8 +64,7 @@ TEST_F(DirectLight, CandidatesCountLikeSamplesWhereNothingIsInTheWay)
 {
     SceneBuilder builder;
     builder.floor(20, 0, builder.material(lambert(kAlbedo)));
-    builder.light({{"type", "directional"}, {"intensity", 3}},
-                  {{"rotation", {-std::sqrt(0.5), 0, 0, std::sqrt(0.5)}}});
+    builder.light({{"type", "directional"}, {"intensity", 3}}, {{"rotation", {-std::sqrt(0.5), 0, 0, std::sqrt(0.5)}}});
     double irradiance = 3;
     for (int i = 0; i < 32; ++i)
     {
@@ -80,8 +79,8 @@ TEST_F(DirectLight, CandidatesCountLikeSamplesWhereNothingIsInTheWay)
     {
         const Estimate candidates = oneFrame(*scene, count, 1), samples = oneFrame(*scene, 1, count);
         const double gain = one.standard_error[0] / candidates.standard_error[0];
-        fmt::print("  {} candidates: mean {:.4f} of {:.4f}, {:.2f} times less deviation; as many samples: {:.2f}\n", count,
-                   candidates.mean[0], want, gain, one.standard_error[0] / samples.standard_error[0]);
+        fmt::print("  {} candidates: mean {:.4f} of {:.4f}, {:.2f} times less deviation; as many samples: {:.2f}\n",
+                   count, candidates.mean[0], want, gain, one.standard_error[0] / samples.standard_error[0]);
         EXPECT_NEAR(candidates.mean[0], want, 4 * candidates.standard_error[0]);
         EXPECT_GE(gain, std::sqrt(count));
     }

@@ -26,7 +26,8 @@ TEST_F(Lobes, DispersionBendsBlueMost)
     const double half_spread = (ior - 1) * 0.025 * dispersion;
     const std::array<double, 3> iors{ior - half_spread, ior, ior + half_spread};
     for (const bool front : {true, false})
-        for (const double degrees : {10.0, 35.0}) // all three leave the body: red's critical angle is 46.7 degrees, blue's 38
+        for (const double degrees :
+             {10.0, 35.0}) // all three leave the body: red's critical angle is 46.7 degrees, blue's 38
         {
             gpu::BsdfDrawParams glass = white(degrees);
             glass.roughness = 0;
@@ -50,7 +51,8 @@ TEST_F(Lobes, DispersionBendsBlueMost)
                         const double eta = front ? iors[c] : 1 / iors[c];
                         const Double3 want(-glass.wo.x / eta, -glass.wo.y / eta, -std::sqrt(1 - square(sine / eta)));
                         // Its z comes from a difference, which grows as 1 / z.
-                        ASSERT_LE(length(Double3(d.direction) - want), kTensOfRoundings / std::abs(want.z)) << degrees << ", " << c;
+                        ASSERT_LE(length(Double3(d.direction) - want), kTensOfRoundings / std::abs(want.z))
+                            << degrees << ", " << c;
                         weights[c].push_back(w[c]);
                         sines[c] = std::hypot(d.direction.x, d.direction.y);
                     }

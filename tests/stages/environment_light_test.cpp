@@ -128,7 +128,8 @@ TEST_F(ClosedForm, ATurnedEnvironmentIsSeenAndLightsAsItsMapTurned)
     Rgb want = irradiance(map, turned({1, 0, 0}, -kAngle));
     for (double& channel : want)
         channel *= kAlbedo / kPi;
-    expectBoth("lit side", *scene, viewOf({0.5f, 0, 0}, {1, 0, 0}), want, {.side = 32, .sample_count = 128, .depth = 3});
+    expectBoth("lit side", *scene, viewOf({0.5f, 0, 0}, {1, 0, 0}), want,
+               {.side = 32, .sample_count = 128, .depth = 3});
 }
 
 /// The directions at a bright texel's rim must have the density with which they are chosen: where map and direction

@@ -43,7 +43,8 @@ protected:
     static std::vector<gpu::CutNode> wallNodes(Irradiance&& irradiance)
     {
         std::vector<gpu::CutNode> nodes;
-        const auto add = [&](gpu::vec3 center, Double3 normal) { nodes.push_back(node(center, normal, irradiance(normal))); };
+        const auto add = [&](gpu::vec3 center, Double3 normal)
+        { nodes.push_back(node(center, normal, irradiance(normal))); };
         for (const bool upper : {false, true})
         {
             const double side = upper ? -1 : 1;
@@ -158,7 +159,8 @@ TEST_F(Gather, ByAimedRaysGivesTheSameWithLessNoise)
 {
     constexpr float kStrip = 0.1f; // metres
     SceneBuilder builder;
-    builder.quad({kLow.x, kHigh.y, kLow.z}, {2, 0, 0}, {0, 0, kStrip}, builder.material(with(lambert(kAlbedo), {{"doubleSided", true}})));
+    builder.quad({kLow.x, kHigh.y, kLow.z}, {2, 0, 0}, {0, 0, kStrip},
+                 builder.material(with(lambert(kAlbedo), {{"doubleSided", true}})));
     builder.quad({kLow.x, 0, kHigh.z}, {2, 0, 0}, {0, 0, -3}, builder.material(lambert(kAlbedo)));
     const auto scene = load(builder.compile());
     Random random(3);
@@ -167,7 +169,10 @@ TEST_F(Gather, ByAimedRaysGivesTheSameWithLessNoise)
     {
         const gpu::vec3 from{random.between(kLow.x, kHigh.x), kHigh.y, random.between(kLow.z, kLow.z + kStrip)};
         const gpu::vec3 to{random.between(kLow.x, kHigh.x), 0, random.between(kLow.z, kHigh.z)};
-        photons.push_back({.position = from, .direction = packedNormal({0, 1, 0}), .power = {1, 1, 1}, .normal = packedNormal({0, -1, 0})});
+        photons.push_back({.position = from,
+                           .direction = packedNormal({0, 1, 0}),
+                           .power = {1, 1, 1},
+                           .normal = packedNormal({0, -1, 0})});
         photons.push_back({.position = to,
                            .direction = packedNormal(normalized(Double3(to) - Double3(from))),
                            .power = {1, 1, 1},
@@ -196,7 +201,8 @@ TEST_F(Gather, ByAimedRaysGivesTheSameWithLessNoise)
     double mean, squares, aimed_mean, aimed_squares;
     errorsOf(nullptr, mean, squares);
     errorsOf(&legs, aimed_mean, aimed_squares);
-    fmt::print("  mean error {:+.5f}, aimed {:+.5f}; mean square {:.3g}, aimed {:.3g}\n", mean, aimed_mean, squares, aimed_squares);
+    fmt::print("  mean error {:+.5f}, aimed {:+.5f}; mean square {:.3g}, aimed {:.3g}\n", mean, aimed_mean, squares,
+               aimed_squares);
     EXPECT_LE(std::abs(aimed_mean), 4 * std::sqrt(aimed_squares / 200));
     EXPECT_LT(aimed_squares, 0.5 * squares);
 }
@@ -262,10 +268,11 @@ TEST_F(Gather, SeesRoughSurfacesByTheirBrdf)
 {
     const GltfMaterial plastic{.base_color = {0.3, 0.3, 0.3}, .roughness = 0.6};
     SceneBuilder builder;
-    builder.box(kLow, kHigh, builder.material({{"pbrMetallicRoughness",
-                                                {{"baseColorFactor", {0.3, 0.3, 0.3, 1}},
-                                                 {"metallicFactor", 0},
-                                                 {"roughnessFactor", plastic.roughness}}}}),
+    builder.box(kLow, kHigh,
+                builder.material({{"pbrMetallicRoughness",
+                                   {{"baseColorFactor", {0.3, 0.3, 0.3, 1}},
+                                    {"metallicFactor", 0},
+                                    {"roughnessFactor", plastic.roughness}}}}),
                 true);
     const auto scene = load(builder.compile());
     const Double3 place{0.1, 0, -0.2}, light = normalized({0.9, -0.3, 0.1}); // towards the light, below the ceiling
@@ -285,7 +292,8 @@ TEST_F(Gather, SeesRoughSurfacesByTheirBrdf)
     for (int i = 0; i < kPatches; ++i)
         for (int k = 0; k < kPatches; ++k)
         {
-            const Double3 to = Double3{kLow.x + width * (i + 0.5) / kPatches, kHigh.y, kLow.z + depth * (k + 0.5) / kPatches} - place;
+            const Double3 to =
+                Double3{kLow.x + width * (i + 0.5) / kPatches, kHigh.y, kLow.z + depth * (k + 0.5) / kPatches} - place;
             const Double3 d = normalized(to); // local to the ceiling: its z is -y
             const double f = gltfBrdf(plastic, {-d.x, -d.z, d.y}, {light.x, light.z, -light.y})[0];
             want += f * d.y * d.y / length2(to) * patch;

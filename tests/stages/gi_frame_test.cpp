@@ -24,7 +24,7 @@ protected:
         constexpr uint32_t kFrames = 24; // the last of which gather at every pixel
         Settings settings = smallSettings();
         settings.photon_count = 10000; // fewer make wider density estimates, which lose more light at the room's edges
-        settings.sample_count = 512; // as many rays as 17 a pixel
+        settings.sample_count = 512;   // as many rays as 17 a pixel
         settings.gather_rays = 64;
         SceneBuilder builder;
         const nlohmann::json glowing =
@@ -100,8 +100,7 @@ TEST_F(GiFrame, GivesTheSameBitsForTheSameSeedAndOthersForAnother)
     const auto scene = load(room(builder));
     Settings settings = smallSettings();
     settings.gather_rays = 256; // 17 a pixel: the last frames gather at every pixel
-    const auto picture = [&](uint32_t seed)
-    { return renderGi(*scene, kCamera, settings, 20, kWidth, kHeight, seed); };
+    const auto picture = [&](uint32_t seed) { return renderGi(*scene, kCamera, settings, 20, kWidth, kHeight, seed); };
     const Picture first = picture(1);
     EXPECT_TRUE(equalBits(first, picture(1)));
     EXPECT_FALSE(equalBits(first, picture(2)));
@@ -112,7 +111,8 @@ TEST_F(GiFrame, IsTheSumOfItsTermsUpToRounding)
 {
     SceneBuilder builder;
     lamps(builder);
-    builder.quad({-0.9f, 0.01f, 0.9f}, {1.8f, 0, 0}, {0, 0, -0.6f}, builder.material({{"pbrMetallicRoughness", {{"metallicFactor", 0}, {"roughnessFactor", 0.8}}}}));
+    builder.quad({-0.9f, 0.01f, 0.9f}, {1.8f, 0, 0}, {0, 0, -0.6f},
+                 builder.material({{"pbrMetallicRoughness", {{"metallicFactor", 0}, {"roughnessFactor", 0.8}}}}));
     const auto scene = load(room(builder));
     Settings settings = smallSettings();
     settings.gather_rays = 256;
@@ -125,7 +125,8 @@ TEST_F(GiFrame, IsTheSumOfItsTermsUpToRounding)
         };
         const auto all = pictureOf(gpu::kTermAll);
         std::vector<Double3> sum(all.size());
-        for (const uint32_t term : {gpu::kTermEmission, gpu::kTermDirect, gpu::kTermCaustics, gpu::kTermIndirect, gpu::kTermGlossy})
+        for (const uint32_t term :
+             {gpu::kTermEmission, gpu::kTermDirect, gpu::kTermCaustics, gpu::kTermIndirect, gpu::kTermGlossy})
         {
             const auto part = pictureOf(term);
             double light = 0;
@@ -140,7 +141,8 @@ TEST_F(GiFrame, IsTheSumOfItsTermsUpToRounding)
         // light a frame, and frames add up.
         const double tolerance = 2 * (8 + frames) * 0x1p-24;
         for (size_t i = 0; i < all.size(); ++i)
-            ASSERT_LE(largest(max(sum[i] - all[i], Double3(all[i]) - sum[i])), tolerance * largest(all[i])) << i << ", frames " << frames;
+            ASSERT_LE(largest(max(sum[i] - all[i], Double3(all[i]) - sum[i])), tolerance * largest(all[i]))
+                << i << ", frames " << frames;
     }
 }
 

@@ -122,7 +122,8 @@ Paths GiTest::pathsOf(const std::vector<gpu::Photon>& photons, uint32_t length)
             .size = sizeBuffer(count),
             .offsets = upload("test.offsets", offsets),
             .counts = upload("test.counts", std::vector<uint32_t>(path_count, length)),
-            .store = upload("test.store", std::vector{gpu::PhotonStore{.path_count = path_count, .photon_count = count}}),
+            .store =
+                upload("test.store", std::vector{gpu::PhotonStore{.path_count = path_count, .photon_count = count}}),
             .path_count = path_count};
 }
 
@@ -146,7 +147,8 @@ std::unique_ptr<Cut> GiTest::cutOf(const SceneGpu& scene, const std::vector<gpu:
     }
     cut->nodes = device().uploadTexels<gpu::CutNode>("test.cut_nodes", cut->sorted);
     cut->directions = upload("test.cut_directions", directions);
-    cut->gpu.emplace(CutStage::Output{.size = cut->size, .nodes = cut->nodes, .directions = cut->directions, .tree = *cut->tree});
+    cut->gpu.emplace(
+        CutStage::Output{.size = cut->size, .nodes = cut->nodes, .directions = cut->directions, .tree = *cut->tree});
     return cut;
 }
 

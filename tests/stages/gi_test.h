@@ -47,8 +47,14 @@ struct Paths
     uint32_t path_count;
     StoredPhotons output() const
     {
-        return {.photons = photons, .slots = slots, .size = size, .offsets = offsets, .counts = counts, .store = store,
-                .path_count = path_count, .capacity = path_count};
+        return {.photons = photons,
+                .slots = slots,
+                .size = size,
+                .offsets = offsets,
+                .counts = counts,
+                .store = store,
+                .path_count = path_count,
+                .capacity = path_count};
     }
 };
 

@@ -254,7 +254,8 @@ protected:
         submit(scene,
                [&](Recorder& rec)
                {
-                   const auto points = primary.record(rec, rays, {.camera = view, .specular_depth = 1, .emission = emission});
+                   const auto points =
+                       primary.record(rec, rays, {.camera = view, .specular_depth = 1, .emission = emission});
                    const auto sorted = interpolate.sort(rec, {.size = size, .samples = samples, .spheres = spheres});
                    stage.recordHarmonics(rec, sorted, harmonics,
                                          {.points = points.points,
@@ -385,7 +386,8 @@ TEST_F(GlossyView, OfEvenLightByRaysIsTheDirectionalReflectance)
                 submit(*scene,
                        [&](Recorder& rec)
                        {
-                           const auto points = primary.record(rec, rays, {.camera = view, .specular_depth = 1, .emission = emission});
+                           const auto points =
+                               primary.record(rec, rays, {.camera = view, .specular_depth = 1, .emission = emission});
                            stage.record(rec, rays, *cut->gpu,
                                         {.points = points.points,
                                          .radiance = radiance,

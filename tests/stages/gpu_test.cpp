@@ -72,7 +72,8 @@ void GpuTest::expectGroups(const gpu::QueueSize& size)
 {
     for (const auto& [row, group_size] : {std::pair(0, 64.0), std::pair(1, 128.0), std::pair(2, 256.0)})
     {
-        EXPECT_EQ(size.groups[row].x, uint32_t(std::ceil(size.count / group_size))) << size.count << " in groups of " << group_size;
+        EXPECT_EQ(size.groups[row].x, uint32_t(std::ceil(size.count / group_size)))
+            << size.count << " in groups of " << group_size;
         EXPECT_EQ(size.groups[row].y, 1u);
         EXPECT_EQ(size.groups[row].z, 1u);
     }

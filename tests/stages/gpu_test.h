@@ -29,7 +29,10 @@ protected:
     /// A package's scene on the device. Aborts where there is none: that is the test's mistake.
     std::unique_ptr<SceneGpu> load(const std::filesystem::path& package);
     /// A place of the source in the package that was loaded last: the compiler moves far scenes to the origin.
-    gpu::vec3 inPackage(gpu::vec3 source) const { return {source.x - origin_.x, source.y - origin_.y, source.z - origin_.z}; }
+    gpu::vec3 inPackage(gpu::vec3 source) const
+    {
+        return {source.x - origin_.x, source.y - origin_.y, source.z - origin_.z};
+    }
 
     /// Renders `sample_count` samples a pixel, and expects none of them to be NaN or infinite.
     /// @param scene from load()

@@ -133,8 +133,9 @@ TEST_F(Guides, ChangeNoPower)
     // The sun's direct power, exact without bounces: its patch on the floor has 1 m^2.
     const auto direct = [](const gpu::Photon& p)
     { return isFloorOfRoom(p) && std::abs(p.position.x) < 0.5f && std::abs(p.position.z) < 0.5f; };
-    constexpr uint32_t kRounds = 8,
-                       kBefore = 4; // until every cell of the hole is learned: photons through other cells are few and of high power
+    constexpr uint32_t
+        kRounds = 8,
+        kBefore = 4; // until every cell of the hole is learned: photons through other cells are few and of high power
     for (uint32_t round = 0; round < kBefore; ++round)
         (void)emit(round);
     double patch = 0, patch2 = 0, field = 0, field2 = 0;
@@ -194,7 +195,8 @@ TEST_F(Guides, LearnHowMuchIsWantedOfEachCellsPhotons)
     for (uint32_t path = 0; path < kPaths; ++path)
         for (uint32_t n = 0; n < counts[path]; ++n)
         {
-            const double rays = std::min(importance[place(photons[slots[offsets[path] + n]])], gpu::kGuideMostImportance);
+            const double rays =
+                std::min(importance[place(photons[slots[offsets[path] + n]])], gpu::kGuideMostImportance);
             scores[cells[path]] += rays, total += rays; // nothing was guided yet: all weigh 1
             useful += rays > 0;
         }
@@ -215,8 +217,8 @@ TEST_F(Guides, LeaveByTheLearnedDistribution)
     constexpr uint32_t kPowerOfTwo = 16384;
     static_assert(kPowerOfTwo <= kPaths);
     const Buffer starts = device().array<gpu::PhotonStart>("test.starts", kPowerOfTwo);
-    submit(*scene_,
-           [&](Recorder& rec) { guide_->emit(rec, starts, {.path_count = kPowerOfTwo, .first_path = 0, .seed = 9, .aim = 0}); });
+    submit(*scene_, [&](Recorder& rec)
+           { guide_->emit(rec, starts, {.path_count = kPowerOfTwo, .first_path = 0, .seed = 9, .aim = 0}); });
     std::vector<double> counts(learned.size());
     for (const uint32_t cell : contents<uint32_t>(guide_->cells(), kPowerOfTwo))
         ++counts.at(cell);

@@ -41,9 +41,14 @@ protected:
                {
                    light_->clear(rec, gpu::kLightIndirect | gpu::kLightCaustics);
                    rec.copy(input, light_->direct, kPixels * sizeof(gpu::vec3));
-                   surface_.emplace(primary_->record(rec, rays, {.camera = frame.camera, .specular_depth = 2, .emission = light_->emission}));
+                   surface_.emplace(primary_->record(
+                       rec, rays, {.camera = frame.camera, .specular_depth = 2, .emission = light_->emission}));
                    buffers_.emplace(signals_->record(rec, frame, *surface_, *light_, gpu::kLightDirect));
-                   history_->record(rec, {.signals = *buffers_, .surface = *surface_, .light = *light_, .frame = frame, .most_frames = most_frames});
+                   history_->record(rec, {.signals = *buffers_,
+                                          .surface = *surface_,
+                                          .light = *light_,
+                                          .frame = frame,
+                                          .most_frames = most_frames});
                    signals_->apply(rec, buffers_->direct, buffers_->direct, light_->direct, kPixels);
                });
         last_ = frame.camera;
@@ -84,7 +89,9 @@ TEST_F(History, IsTheMeanOfWhatTheSurfaceShowedSinceItCameIntoView)
         for (uint32_t pixel = 0; pixel < kPixels; ++pixel)
         {
             const size_t in_view = (kWidth - 1 - pixel % kWidth) / 3, since = t - std::min(t, in_view);
-            const double mean = std::accumulate(shown.begin() + ptrdiff_t(since), shown.begin() + ptrdiff_t(t) + 1, 0.0) / double(t + 1 - since);
+            const double mean =
+                std::accumulate(shown.begin() + ptrdiff_t(since), shown.begin() + ptrdiff_t(t) + 1, 0.0) /
+                double(t + 1 - since);
             const double tolerance = 8 * (double(t + 1) * kMantissa + kSignal);
             ASSERT_NEAR(got[pixel].x, mean, tolerance) << t << ", " << pixel % kWidth;
             ASSERT_NEAR(got[pixel].z, mean / 4, tolerance);
@@ -108,10 +115,12 @@ TEST_F(History, LightThatIsEvenStaysWhatItIsForHundredsOfFrames)
     for (const gpu::vec3 light : direct())
     {
         sum += light.z;
-        EXPECT_NEAR(light.x, 0.7, 0.7 * (34 * kMantissa + kSignal)); // what is older than 33 frames has next to no weight
+        EXPECT_NEAR(light.x, 0.7,
+                    0.7 * (34 * kMantissa + kSignal)); // what is older than 33 frames has next to no weight
     }
     // Rounding goes up and down by chance: in the mean over the pixels, whose errors are independent, it leaves a part of sqrt(pixels).
-    EXPECT_NEAR(sum / kPixels, 0.013, 5 * 0.7 * 34 * kMantissa / std::sqrt(double(kPixels)) + 0.013 * kSignal + 0.7 * 0.5 / 4095);
+    EXPECT_NEAR(sum / kPixels, 0.013,
+                5 * 0.7 * 34 * kMantissa / std::sqrt(double(kPixels)) + 0.013 * kSignal + 0.7 * 0.5 / 4095);
 }
 
 /// Light goes on where all of the four pixels that it is taken from saw the same quad, and starts anew where none did.
@@ -134,7 +143,8 @@ TEST_F(History, GoesOnOnTheSameSurfaceAndStartsAnewWhereAnotherHidIt)
         // Where the point was: the old camera was 0.3 to the left.
         const gpu::vec3 p = now[pixel].position;
         const double half = std::tan(0.45), aspect = double(kWidth) / kHeight, depth = 6 - p.z;
-        const double x = (p.x / (depth * half * aspect) + 1) / 2 * kWidth - 0.5, y = (1 - p.y / (depth * half)) / 2 * kHeight - 0.5;
+        const double x = (p.x / (depth * half * aspect) + 1) / 2 * kWidth - 0.5,
+                     y = (1 - p.y / (depth * half)) / 2 * kHeight - 0.5;
         ASSERT_NEAR(pixel % kWidth + motions[pixel].from.x, x, 1e-3);
         ASSERT_NEAR(pixel / kWidth + motions[pixel].from.y, y, 1e-3);
         ASSERT_NEAR(motions[pixel].distance, std::hypot(p.x - 0.3, p.y, depth), 1e-4);
@@ -210,7 +220,8 @@ TEST_F(Antialias, IsTheMeanOfTheFramesAtWholePixels)
     std::vector<gpu::vec3> first(kPixels), second(kPixels);
     for (uint32_t i = 0; i < kPixels; ++i)
     {
-        const float grey = i % 2 == (i / kWidth) % 2 ? 1.0f : 0.0f; // a deviation of 1/2: old pixels of 0.4 to 0.6 lie within
+        const float grey =
+            i % 2 == (i / kWidth) % 2 ? 1.0f : 0.0f; // a deviation of 1/2: old pixels of 0.4 to 0.6 lie within
         second[i] = {grey, grey, grey};
         const float old = random.between(0.4f, 0.6f);
         first[i] = {old, old, old};
@@ -219,7 +230,8 @@ TEST_F(Antialias, IsTheMeanOfTheFramesAtWholePixels)
     const auto got = moved(second, {-2, 1}, true);
     for (uint32_t y = 3; y < kHeight - 3; ++y)
         for (uint32_t x = 4; x < kWidth - 3; ++x)
-            ASSERT_NEAR(got[y * kWidth + x].x, (first[(y + 1) * kWidth + x - 2].x + second[y * kWidth + x].x) / 2, 1e-5);
+            ASSERT_NEAR(got[y * kWidth + x].x, (first[(y + 1) * kWidth + x - 2].x + second[y * kWidth + x].x) / 2,
+                        1e-5);
 }
 
 TEST_F(Antialias, StandingPictureGoesOnFromTheMovingOneAndForgetsIt)
@@ -248,7 +260,11 @@ TEST_F(Antialias, StandingPictureGoesOnFromTheMovingOneAndForgetsIt)
 TEST(FramePlan, GoesOnWhereTheLastFrameServes)
 {
     Settings settings;
-    const FrameTraits traits{.has_specular = true, .reflects_roughly = true, .has_noisy_direct = true, .gathers_at_pixels = true, .pixel_rays = 8};
+    const FrameTraits traits{.has_specular = true,
+                             .reflects_roughly = true,
+                             .has_noisy_direct = true,
+                             .gathers_at_pixels = true,
+                             .pixel_rays = 8};
     FrameInfo frame{};
     const FramePlan first = planFrame(settings, traits, frame);
     EXPECT_TRUE(first.remembers && first.antialiases && first.harmonics && first.gathers_at_samples);
@@ -273,17 +289,23 @@ TEST(FramePlan, GoesOnWhereTheLastFrameServes)
 /// Varnish over a diffuse wall: the pixel's own point keeps what the mirror does not take, the second has the mirrored part.
 TEST_F(History, MirroredLightHasAPointOfItsOwn)
 {
-    builder_.quad({-90, -90, 0}, {180, 0, 0}, {0, 180, 0}, builder_.material({{"pbrMetallicRoughness", {{"metallicFactor", 0}, {"roughnessFactor", 0}}}}));
+    builder_.quad({-90, -90, 0}, {180, 0, 0}, {0, 180, 0},
+                  builder_.material({{"pbrMetallicRoughness", {{"metallicFactor", 0}, {"roughnessFactor", 0}}}}));
     builder_.quad({-90, -90, 9}, {0, 180, 0}, {180, 0, 0}, builder_.material(lambert(0.3)));
     load();
     const PrimaryStage stage(device(), *scene_, kPixels, true);
     const RayStage rays(device(), *scene_);
-    const Camera camera{.name = "", .position = {0, -2, 4}, .forward = {0, 0.6f, -0.8f}, .up = {0, 0.8f, 0.6f}, .vertical_fov = 0.5f};
+    const Camera camera{
+        .name = "", .position = {0, -2, 4}, .forward = {0, 0.6f, -0.8f}, .up = {0, 0.8f, 0.6f}, .vertical_fov = 0.5f};
     const Buffer emission = device().array<gpu::vec3>("test.emission", 2 * kPixels);
     std::optional<SurfaceBuffers> surface;
     submit(*scene_,
            [&](Recorder& rec)
-           { surface.emplace(stage.record(rec, rays, {.camera = cameraParams(camera, kWidth, kHeight), .specular_depth = 4, .emission = emission})); });
+           {
+               surface.emplace(stage.record(
+                   rec, rays,
+                   {.camera = cameraParams(camera, kWidth, kHeight), .specular_depth = 4, .emission = emission}));
+           });
     ASSERT_EQ(surface->point_count, 2 * kPixels);
     const auto all = contents<gpu::ShadingPoint>(surface->points, 2 * kPixels);
     for (uint32_t pixel = 0; pixel < kPixels; ++pixel)

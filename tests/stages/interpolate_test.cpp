@@ -135,10 +135,12 @@ double weightOf(const gpu::Sample& s, Double3 x, Double3 n, double& margin)
     const double reach = 1 - surfaceDistance2(d, normal) / (double(s.support) * s.support),
                  front = dot(d, n + normal) + 0.01 * s.harmonic_mean_distance;
     if (reach > -1e-4)
-        margin = std::min({margin, std::abs(reach), std::abs(dot(n, normal) - 0.01), std::abs(front) / s.harmonic_mean_distance});
+        margin = std::min(
+            {margin, std::abs(reach), std::abs(dot(n, normal) - 0.01), std::abs(front) / s.harmonic_mean_distance});
     if (reach <= 0 || dot(n, normal) <= 0.01 || front < 0)
         return 0;
-    return reach * reach * std::min(100.0, 1 / std::max(length(d) / s.harmonic_mean_distance + length(n - normal), 1e-6));
+    return reach * reach *
+           std::min(100.0, 1 / std::max(length(d) / s.harmonic_mean_distance + length(n - normal), 1e-6));
 }
 
 TEST_F(Interpolation, WeighsSamplesByDistanceAndNormal)

@@ -31,7 +31,10 @@ std::vector<gpu::Photon> numbered(uint32_t path_count)
     return photons;
 }
 
-double luminanceOf(gpu::vec3 rgb) { return 0.2126 * rgb.x + 0.7152 * rgb.y + 0.0722 * rgb.z; }
+double luminanceOf(gpu::vec3 rgb)
+{
+    return 0.2126 * rgb.x + 0.7152 * rgb.y + 0.0722 * rgb.z;
+}
 
 TEST_F(Legs, LeadFromOnePhotonOfAPathToItsNextAndStandForAllOfTheirPower)
 {

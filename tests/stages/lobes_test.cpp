@@ -35,11 +35,13 @@ TEST_F(Lobes, EachIsChosenByItsOwnDensity)
         gpu::BsdfDrawParams sheen = none(degrees);
         sheen.sheen = 1;
         sheen.sheen_roughness = 0.5f;
-        addDraws(tests, fmt::format("sheen, {} degrees", degrees), sheen, 1e3, [](Double3 wi) { return wi.z > 0 ? 0.5 / kPi : 0; });
+        addDraws(tests, fmt::format("sheen, {} degrees", degrees), sheen, 1e3,
+                 [](Double3 wi) { return wi.z > 0 ? 0.5 / kPi : 0; });
 
         gpu::BsdfDrawParams leaf = white(degrees);
         leaf.diffuse_transmission = 1;
-        addDraws(tests, fmt::format("leaf, {} degrees", degrees), leaf, 1e3, [](Double3 wi) { return std::max(0.0, -wi.z) / kPi; });
+        addDraws(tests, fmt::format("leaf, {} degrees", degrees), leaf, 1e3,
+                 [](Double3 wi) { return std::max(0.0, -wi.z) / kPi; });
     }
     tests.expectAll();
 }

@@ -13,7 +13,8 @@ inline double square(double x)
     return x * x;
 }
 
-inline constexpr double kUnit = 0x1p-24; // half of the last place of 1: what rounding one result to single precision may add
+inline constexpr double kUnit =
+    0x1p-24; // half of the last place of 1: what rounding one result to single precision may add
 /// Of a result of some tens of operations on numbers up to 1.
 inline constexpr double kTensOfRoundings = 32 * kUnit;
 

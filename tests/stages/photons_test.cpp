@@ -240,7 +240,8 @@ TEST_F(Photons, LightShadingNormalsAsTheEyeSeesThem)
     in.bounce_limit = 2;
     const auto photons = emit(*scene, PhotonKind::kGlobal, in);
     const double cosine = std::cos(kTilt), falloff = std::cos(kInner) - std::cos(kOuter);
-    const double irradiance = 100 * 2 * kPi * (1 - std::cos(kInner) + falloff / 3) * cosine; // the beam's mean is straight down
+    const double irradiance =
+        100 * 2 * kPi * (1 - std::cos(kInner) + falloff / 3) * cosine; // the beam's mean is straight down
     expectPower(powerOf(arrived, kAll), irradiance * Double3(1, 1, 1), 0.05, "irradiance");
     // Even radiance over the directions above both planes, whose projected solid angle is pi (1 + cosine) / 2.
     expectPower(powerOf(without(photons, arrived), kAll), kAlbedo * irradiance * (1 + cosine) / 2 * Double3(1, 1, 1),

@@ -1,6 +1,6 @@
 // lumicut-play as a program: error messages, files that it writes, pictures.
-#include "tests/tools/run_program.h"
 #include "image/read_exr.h"
+#include "tests/tools/run_program.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -40,7 +40,10 @@ void writeFile(const std::filesystem::path& path, const std::string& bytes)
     std::ofstream(path, std::ios::binary) << bytes;
 }
 
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+bool contains(const std::string& text, const std::string& part)
+{
+    return text.find(part) != std::string::npos;
+}
 
 /// A folder with the scene above, compiled.
 class Player : public testing::Test
@@ -58,7 +61,8 @@ protected:
     std::string path(const std::string& name) const { return fmt::format("'{}'", (folder_ / name).string()); }
     ProgramRun play(const std::string& arguments) const
     {
-        return runProgram(LUMICUT_PLAY, arguments + " --headless" + (contains(arguments, "--size") ? "" : " --size 32x24"));
+        return runProgram(LUMICUT_PLAY,
+                          arguments + " --headless" + (contains(arguments, "--size") ? "" : " --size 32x24"));
     }
     ProgramRun compile(const std::string& arguments) const { return runProgram(LUMICUT_COMPILE, arguments); }
 
@@ -79,7 +83,8 @@ protected:
     }
 
     /// A run that must fail: with this code, a sentence on stderr that holds `words`, nothing on stdout, no file more.
-    void expectRefusal(const ProgramRun& run, const std::set<std::string>& before, int code, const std::string& words) const
+    void expectRefusal(const ProgramRun& run, const std::set<std::string>& before, int code,
+                       const std::string& words) const
     {
         EXPECT_EQ(run.exit_code, code) << run.err;
         EXPECT_TRUE(contains(run.err, words)) << run.err;
@@ -180,7 +185,8 @@ TEST_F(Player, RefusesOutputsThatCannotBeWritten)
     const std::string scene = path("scene.lumi") + " ";
     expectPlayRefused(scene + "--output " + path("none/out.exr"), 2, "none");
     expectPlayRefused(scene + "--output " + path("folder.exr"), 2, "folder");
-    expectPlayRefused(scene + "--output /proc/out.exr", 2, "cannot be created"); // a folder no one can write to, root included
+    expectPlayRefused(scene + "--output /proc/out.exr", 2,
+                      "cannot be created"); // a folder no one can write to, root included
     expectPlayRefused(scene + "--output /proc/out.png", 2, "cannot be created");
     expectPlayRefused(scene + "--stats " + path("none/stats.json"), 2, "");
 }
@@ -195,8 +201,9 @@ TEST_F(Player, SaysWhichDevicesThereAreWhereNoneMatches)
 TEST_F(Player, SaysWhatToInstallWhereThereIsNoDriver)
 {
     const std::set<std::string> before = files();
-    const ProgramRun run = runProgram("/usr/bin/env", fmt::format("VK_ICD_FILENAMES=/none VK_DRIVER_FILES=/none '{}' --headless {} --output {}",
-                                                                  LUMICUT_PLAY, path("scene.lumi"), path("out.exr")));
+    const ProgramRun run = runProgram(
+        "/usr/bin/env", fmt::format("VK_ICD_FILENAMES=/none VK_DRIVER_FILES=/none '{}' --headless {} --output {}",
+                                    LUMICUT_PLAY, path("scene.lumi"), path("out.exr")));
     expectRefusal(run, before, 4, "mesa-vulkan-drivers");
 }
 

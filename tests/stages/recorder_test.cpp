@@ -148,12 +148,14 @@ protected:
     /// A kernel of 64 threads a group.
     uint32_t reachedBy64(const gpu::QueueSize& made) const
     {
-        const Buffer size = device().upload<gpu::QueueSize>("test.size", std::span(&made, 1)), one = filled(1), sum = zeros();
+        const Buffer size = device().upload<gpu::QueueSize>("test.size", std::span(&made, 1)), one = filled(1),
+                     sum = zeros();
         submit(
             [&](Recorder& rec)
             {
-                rec.runIndirect(accumulate_, size, gpu::AccumulateParams{.pixel_count = kCount, .sample_count = 1},
-                                {{"Radiance", one}, {"Sum", sum}, {"Compensation", compensation_}, {"NonFinite", non_finite_}});
+                rec.runIndirect(
+                    accumulate_, size, gpu::AccumulateParams{.pixel_count = kCount, .sample_count = 1},
+                    {{"Radiance", one}, {"Sum", sum}, {"Compensation", compensation_}, {"NonFinite", non_finite_}});
             });
         return uint32_t(std::ranges::count(device().download<gpu::vec3>(sum, kElements), 1.0f, &gpu::vec3::x));
     }
@@ -164,7 +166,8 @@ protected:
         const Kernel mark = device().kernel("samples/occupied");
         EXPECT_EQ(mark.code().group_size, 256u);
         const Buffer size = device().upload<gpu::QueueSize>("test.size", std::span(&made, 1)),
-                     sums = device().array<gpu::ClusterSums>("test.sums", kCount), flags = device().array<uint32_t>("test.flags", kCount);
+                     sums = device().array<gpu::ClusterSums>("test.sums", kCount),
+                     flags = device().array<uint32_t>("test.flags", kCount);
         submit(
             [&](Recorder& rec)
             {
@@ -234,8 +237,9 @@ TEST_F(RecorderTest, OrdersReadsOfTheSceneAsOfAnyOtherBuffer)
     rec.write(lights, 0, std::as_bytes(std::span(after)).first(4));
     stage.closest(rec, queue, hits[3], 0);
     EXPECT_EQ(more(), 0u); // rays do not read lights
-    rec.run(accumulate_, 0, gpu::AccumulateParams{.pixel_count = 0, .sample_count = 1}, // a kernel's output
-            {{"Radiance", compensation_}, {"Sum", triangles}, {"Compensation", compensation_}, {"NonFinite", non_finite_}});
+    rec.run(
+        accumulate_, 0, gpu::AccumulateParams{.pixel_count = 0, .sample_count = 1}, // a kernel's output
+        {{"Radiance", compensation_}, {"Sum", triangles}, {"Compensation", compensation_}, {"NonFinite", non_finite_}});
     EXPECT_EQ(more(), 1u);
     stage.closest(rec, queue, hits[4], 0);
     EXPECT_EQ(more(), 1u);
@@ -330,7 +334,8 @@ TEST_F(RecorderDeathTest, NamesABufferThatIsReadAsTexelsWithoutAView)
 {
     GTEST_FLAG_SET(death_test_style, "threadsafe");
     const Kernel kernel = device().kernel("samples/points");
-    const Buffer words = device().array<gpu::DiffusePoint>("test.words", 1), points = device().array<gpu::SamplePoint>("test.points", 1);
+    const Buffer words = device().array<gpu::DiffusePoint>("test.words", 1),
+                 points = device().array<gpu::SamplePoint>("test.points", 1);
     EXPECT_DEATH(
         {
             Recorder rec(device());
@@ -354,8 +359,12 @@ TEST_F(RecorderDeathTest, RefusesIndirectDispatchesWithoutGroupsOfTheKernelsSize
 {
     GTEST_FLAG_SET(death_test_style, "threadsafe");
     const Buffer size = device().array<gpu::QueueSize>("test.size", 1), word = device().array<uint32_t>("test.word", 1);
-    const auto run = [&](const Buffer& given)
-    { submit([&](Recorder& rec) { rec.runIndirect(set_size_, given, gpu::QueueParams{.count = 1}, {{"Queue", size}}); }); };
+    const auto run = [&](const Buffer& given) {
+        submit(
+            [&](Recorder& rec) {
+                rec.runIndirect(set_size_, given, gpu::QueueParams{.count = 1}, {{"Queue", size}});
+            });
+    };
     EXPECT_DEATH(run(size), "rays/set_size: a QueueSize has no dispatch for groups of 1 threads");
     EXPECT_DEATH(run(word), "rays/set_size: buffer 'test.word' of 4 bytes is no QueueSize");
 }
@@ -364,20 +373,28 @@ TEST_F(RecorderDeathTest, RefusesConstantsThatNoKernelUses)
 {
     GTEST_FLAG_SET(death_test_style, "threadsafe");
     const std::array scene{Constant{"kSceneFeatures", 0}}, nonsense{Constant{"kNonsense", 0}};
-    EXPECT_EQ(device().kernel("resolve/tonemap", SharedConstants(scene)).pipeline(), device().kernel("resolve/tonemap").pipeline());
-    EXPECT_NE(device().kernel("primitives/sum", {{"kFlags", 1}}).pipeline(), device().kernel("primitives/sum", {{"kFlags", 0}}).pipeline());
+    EXPECT_EQ(device().kernel("resolve/tonemap", SharedConstants(scene)).pipeline(),
+              device().kernel("resolve/tonemap").pipeline());
+    EXPECT_NE(device().kernel("primitives/sum", {{"kFlags", 1}}).pipeline(),
+              device().kernel("primitives/sum", {{"kFlags", 0}}).pipeline());
     EXPECT_DEATH((void)device().kernel("resolve/tonemap", {{"kSceneFeatures", 0}}),
                  "resolve/tonemap: it uses no specialization constant 'kSceneFeatures'");
-    EXPECT_DEATH((void)device().kernel("resolve/tonemap", SharedConstants(nonsense)), "no kernel uses a specialization constant 'kNonsense'");
-    EXPECT_DEATH((void)device().kernel("primitives/sum", {{"kFlags", 1}, {"kFlags", 0}}), "primitives/sum: a specialization constant is given twice");
+    EXPECT_DEATH((void)device().kernel("resolve/tonemap", SharedConstants(nonsense)),
+                 "no kernel uses a specialization constant 'kNonsense'");
+    EXPECT_DEATH((void)device().kernel("primitives/sum", {{"kFlags", 1}, {"kFlags", 0}}),
+                 "primitives/sum: a specialization constant is given twice");
 }
 
 TEST_F(RecorderDeathTest, RefusesKernelsThatReadASceneWhereNoneIsGiven)
 {
     GTEST_FLAG_SET(death_test_style, "threadsafe");
     const Buffer word = device().array<gpu::QueueSize>("test.word", 1), radiance = zeros();
-    EXPECT_DEATH(submit([&](Recorder& rec)
-                        { rec.run(device().kernel("rays/visible"), 1, NoParams{}, {{"Queue", word}, {"ShadowRays", word}, {"Radiance", radiance}}); }),
+    EXPECT_DEATH(submit(
+                     [&](Recorder& rec)
+                     {
+                         rec.run(device().kernel("rays/visible"), 1, NoParams{},
+                                 {{"Queue", word}, {"ShadowRays", word}, {"Radiance", radiance}});
+                     }),
                  "rays/visible: it reads binding . of the scene, of 0 given to begin");
 }
 

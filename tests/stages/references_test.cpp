@@ -2,6 +2,7 @@
 // Noise is estimated from our own pictures: two halves with different seeds, a and b, make the picture m = (a + b) / 2,
 // and (a - b)^2 / 4 is an unbiased estimate of m's variance, pixel by pixel.
 #include "compiler/compile.h"
+#include "image/read_exr.h"
 #include "runtime/renderer.h"
 #include "tests/stages/double3.h"
 #include "tests/stages/gpu_test.h"
@@ -9,7 +10,6 @@
 #include "tests/stages/same_picture.h"
 #include "tests/tools/temporary_folder.h"
 #include "tools/compare/metrics.h"
-#include "image/read_exr.h"
 
 #include <nlohmann/json.hpp>
 
@@ -68,7 +68,8 @@ package::Package compiledScene(const Comparison& c)
         std::ofstream(folder / "lambert.glb", std::ios::binary) << withoutSpecular(fileBytes(input));
         input = folder / "lambert.glb";
     }
-    const auto report = compile({.input = input, .output = folder / "scene.lumi", .textures = TextureCompression::kRaw});
+    const auto report =
+        compile({.input = input, .output = folder / "scene.lumi", .textures = TextureCompression::kRaw});
     check(report, "{}: {}", c.scene, report.error().message);
     auto package = package::Package::open(folder / "scene.lumi");
     check(package, "{}", package.error().message);
@@ -161,7 +162,8 @@ void expectAgreement(const Outcome& o)
 {
     constexpr double kMeanTolerance = 0.01, kNoiseFactor = 1.1;
     const auto& ratios = o.metrics.mean_ratio;
-    const double off = (ratios[0] + ratios[1] + ratios[2]) / 3 - 1, standard_error = o.metrics.bias_z != 0 ? std::abs(off / o.metrics.bias_z) : 0;
+    const double off = (ratios[0] + ratios[1] + ratios[2]) / 3 - 1,
+                 standard_error = o.metrics.bias_z != 0 ? std::abs(off / o.metrics.bias_z) : 0;
     for (const double ratio : ratios)
         EXPECT_NEAR(ratio, 1, kMeanTolerance + 2 * standard_error);
     EXPECT_LE(o.metrics.relmse, kNoiseFactor * o.expected_relmse);

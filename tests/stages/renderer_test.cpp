@@ -156,12 +156,18 @@ protected:
     std::unique_ptr<SceneGpu> sunlitFloor(SceneBuilder& scene, double lux)
     {
         scene.floor(2, 0, scene.material(lambert(0.5)));
-        scene.light({{"type", "directional"}, {"intensity", lux}}, {{"rotation", {-std::sqrt(0.5), 0, 0, std::sqrt(0.5)}}});
+        scene.light({{"type", "directional"}, {"intensity", lux}},
+                    {{"rotation", {-std::sqrt(0.5), 0, 0, std::sqrt(0.5)}}});
         package_ = scene.compile();
         return load(package_);
     }
     std::filesystem::path package_;
-    Camera down_{.name = "", .position = {0, 1, 0}, .forward = {0, -1, 0}, .up = {0, 0, -1}, .vertical_fov = 1, .orthographic_height = 0};
+    Camera down_{.name = "",
+                 .position = {0, 1, 0},
+                 .forward = {0, -1, 0},
+                 .up = {0, 0, -1},
+                 .vertical_fov = 1,
+                 .orthographic_height = 0};
 };
 
 TEST_F(Measured, LightSetOnTheDeviceIsTheOneThatShines)

@@ -122,7 +122,8 @@ TEST_F(Reuse, OfPhotonsChangesNothing)
     std::vector<ImageF> kept, anew_at_once;
     for (uint32_t seed = 1; seed <= 6; ++seed)
     {
-        kept.push_back(imageOf(kWidth, kHeight, play({{movedBy(-0.05f), photons, seed}, {kCamera, photons, seed}}).back().pixels));
+        kept.push_back(
+            imageOf(kWidth, kHeight, play({{movedBy(-0.05f), photons, seed}, {kCamera, photons, seed}}).back().pixels));
         anew_at_once.push_back(imageOf(kWidth, kHeight, play({{kCamera, photons, seed + 100}}).back().pixels));
     }
     expectSamePicture("photons that are kept", kept, anew_at_once, 0.05);
@@ -139,7 +140,8 @@ TEST_F(Reuse, LightChangeAloneStartsThePictureAnew)
 {
     gpu::Light brighter = pointLight();
     brighter.emission = 4.0f * brighter.emission;
-    expectFresh({{kCamera}, {kCamera}, {kCamera, reusing(true), 0, brighter}}, "a light that changes over a standing camera");
+    expectFresh({{kCamera}, {kCamera}, {kCamera, reusing(true), 0, brighter}},
+                "a light that changes over a standing camera");
 }
 
 TEST_F(Reuse, PlacementSeedKeepsSamplesWhereTheyAreUnderOtherSeeds)

@@ -102,8 +102,10 @@ protected:
                     normal = normal + points_->points[pixel].normal;
                 }
                 for (const uint32_t pixel : node.pixels)
-                    node.variation += std::min<double>(gpu::kMostVariation, variation(alpha_, points_->points[pixel].position, points_->points[pixel].normal,
-                                                (1.0 / double(node.pixels.size())) * position, normalized(normal)));
+                    node.variation += std::min<double>(
+                        gpu::kMostVariation,
+                        variation(alpha_, points_->points[pixel].position, points_->points[pixel].normal,
+                                  (1.0 / double(node.pixels.size())) * position, normalized(normal)));
             }
         }
         return levels;

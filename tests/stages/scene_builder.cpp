@@ -2,8 +2,8 @@
 
 #include "compiler/compile.h"
 #include "format/check.h"
-#include "tests/compiler/gltf_builder.h"
 #include "image/write_image.h"
+#include "tests/compiler/gltf_builder.h"
 
 #include <algorithm>
 #include <array>

@@ -48,7 +48,8 @@ Integral sheenAlbedo(double roughness, double cosine, double (*lobe)(double, Dou
         for (int i = 0; i < steps; ++i)
             for (int k = 0; k < steps; ++k)
             {
-                const double z = (i + 0.5) / steps, phi = std::numbers::pi * (k + 0.5) / steps, r = std::sqrt(1 - z * z);
+                const double z = (i + 0.5) / steps, phi = std::numbers::pi * (k + 0.5) / steps,
+                             r = std::sqrt(1 - z * z);
                 total += z * lobe(roughness, wo, Double3(r * std::cos(phi), r * std::sin(phi), z));
             }
         return total / (steps * steps) * 2 * std::numbers::pi;
@@ -98,8 +99,8 @@ TEST_F(Lobes, ClothKeepsWhatItsAlbedosLeave)
             cloth.sheen_roughness = roughness;
             const Integral want = clothAlbedo(roughness, cloth.wo.z);
             const Mean got = albedo(cloth);
-            fmt::print("  roughness {}, {} degrees: {:.5f} (error {:.2g}), {:.5f}\n", roughness, degrees, got.value, got.error,
-                       want.value);
+            fmt::print("  roughness {}, {} degrees: {:.5f} (error {:.2g}), {:.5f}\n", roughness, degrees, got.value,
+                       got.error, want.value);
             EXPECT_NEAR(got.value, want.value, 4.5 * got.error + want.error) << roughness << ", " << degrees;
             EXPECT_LE(got.value, 1 + kSheenFit + 4.5 * got.error) << roughness << ", " << degrees;
         }
@@ -128,7 +129,8 @@ TEST_F(Lobes, SheenReflectsItsIntegralAndScalesTheBaseByItsAlbedo)
                     ++tried;
                     const Double3 wi = d.direction, h = normalized(Double3(cloth.wo) + wi);
                     const double lobe = sheenLobe(roughness, cloth.wo, wi);
-                    const double fitted = std::max(fittedSheenAlbedo(roughness, cloth.wo.z), fittedSheenAlbedo(roughness, wi.z));
+                    const double fitted =
+                        std::max(fittedSheenAlbedo(roughness, cloth.wo.z), fittedSheenAlbedo(roughness, wi.z));
                     const double taken = 0.6 * fitted;
                     // Powers and exponentials are good to 2^-21 times the exponent in Vulkan; 1 - h.z^2 cancels.
                     const double exponent = 0.5 / square(roughness);

@@ -212,7 +212,8 @@ TEST_F(Terms, EmissionAndDirectAreWhatTheDirectModeShows)
     const auto picture = [&](Mode mode, uint32_t term, uint32_t seed)
     {
         const Settings settings{.specular_depth = kLongChains, .reference_depth = kLongChains, .term = term};
-        return imageOf(kWidth, kHeight, render(*scene, kCamera, settings, kSamples, kWidth, kHeight, mode, seed).pixels);
+        return imageOf(kWidth, kHeight,
+                       render(*scene, kCamera, settings, kSamples, kWidth, kHeight, mode, seed).pixels);
     };
     std::vector<ImageF> direct, terms;
     for (uint32_t seed = 0; seed < kSeeds; ++seed)

@@ -40,8 +40,8 @@ protected:
         view.first_sample = frame;
         const Buffer emission = upload("test.emission", std::vector<gpu::vec3>(kSide * kSide));
         std::optional<SurfaceBuffers> out;
-        submit(*scene,
-               [&](Recorder& rec) { out.emplace(stage.record(rec, rays, {.camera = view, .specular_depth = 2, .emission = emission})); });
+        submit(*scene, [&](Recorder& rec)
+               { out.emplace(stage.record(rec, rays, {.camera = view, .specular_depth = 2, .emission = emission})); });
         float least = 1, most = 0;
         for (const gpu::DiffusePoint& p : contents<gpu::DiffusePoint>(out->diffuse_points, kSide * kSide))
             least = std::min(least, p.reflectance.x), most = std::max(most, p.reflectance.x);

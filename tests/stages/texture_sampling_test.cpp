@@ -14,7 +14,12 @@ struct Place
     float u, v, footprint;
 };
 
-enum class Wrap { kRepeat = 10497, kClamp = 33071, kMirror = 33648 };
+enum class Wrap
+{
+    kRepeat = 10497,
+    kClamp = 33071,
+    kMirror = 33648
+};
 
 /// A scene of one triangle a texture: metallic-roughness maps, which are read as they are stored.
 class TextureSampling : public Sampling
@@ -70,8 +75,8 @@ protected:
     }
 
     /// Bilinear, of one level, channels 1 and 2, 0 to 1.
-    static std::array<float, 2> filtered(const MipChain& chain, uint32_t level, std::array<Wrap, 2> wrap, uint32_t coarse,
-                                         float u, float v)
+    static std::array<float, 2> filtered(const MipChain& chain, uint32_t level, std::array<Wrap, 2> wrap,
+                                         uint32_t coarse, float u, float v)
     {
         const int width = int(chain.width(level)), height = int(chain.height(level));
         const float x = wrapped(u, wrap[0], chain.width(coarse)) * float(width) - 0.5f;
@@ -83,7 +88,8 @@ protected:
         for (int j = 0; j < 2; ++j)
             for (int i = 0; i < 2; ++i)
             {
-                const float weight = (i == 0 ? 1 - (x - float(x0)) : x - float(x0)) * (j == 0 ? 1 - (y - float(y0)) : y - float(y0));
+                const float weight =
+                    (i == 0 ? 1 - (x - float(x0)) : x - float(x0)) * (j == 0 ? 1 - (y - float(y0)) : y - float(y0));
                 const auto texel = chain.texel(level, place(x0 + i, width, wrap[0]), place(y0 + j, height, wrap[1]));
                 sum[0] += weight * texel[1] / 255, sum[1] += weight * texel[2] / 255;
             }
@@ -98,7 +104,8 @@ protected:
         const MipChain chain(image, {gpu::kGreen | gpu::kBlue});
         std::vector<Place> places;
         for (uint32_t i = 0; i < kCount; ++i) // up to the whole texture and beyond
-            places.push_back({uv(random), uv(random), i % 3 == 0 ? 0 : std::pow(float(std::max(image.width, image.height)), octave(random))});
+            places.push_back({uv(random), uv(random),
+                              i % 3 == 0 ? 0 : std::pow(float(std::max(image.width, image.height)), octave(random))});
         const Buffer input = device().upload("test.places", std::span<const Place>(places));
         const Buffer output = device().array<gpu::vec4>("test.draws", kCount);
         Recorder rec(device());
@@ -116,9 +123,11 @@ protected:
             const auto b = filtered(chain, coarse, wraps_[texture], coarse, places[i].u, places[i].v);
             const float blend = level - float(fine);
             EXPECT_NEAR(draws[i].y, a[0] + blend * (b[0] - a[0]), tolerance)
-                << image.width << " x " << image.height << " at " << places[i].u << ", " << places[i].v << ", level " << level;
+                << image.width << " x " << image.height << " at " << places[i].u << ", " << places[i].v << ", level "
+                << level;
             EXPECT_NEAR(draws[i].z, a[1] + blend * (b[1] - a[1]), tolerance)
-                << image.width << " x " << image.height << " at " << places[i].u << ", " << places[i].v << ", level " << level;
+                << image.width << " x " << image.height << " at " << places[i].u << ", " << places[i].v << ", level "
+                << level;
         }
     }
 
@@ -159,6 +168,7 @@ TEST_F(TextureSampling, BlocksOfManySizesShowTheSame)
     const auto scene = compiled(TextureCompression::kBlocks);
     EXPECT_EQ(tiled_, 1);
     for (uint32_t i = 0; i < images_.size(); ++i)
-        expectAsTheTwin(*scene, i, kRawTolerance + 0.06); // a whole wave across 5 texels is more than lines of colours hold
+        expectAsTheTwin(*scene, i,
+                        kRawTolerance + 0.06); // a whole wave across 5 texels is more than lines of colours hold
 }
 } // namespace

@@ -62,8 +62,8 @@ TEST_F(Lobes, ThinFilmsHaveTheColoursOfAirysSum)
             film.count = 1;
             const gpu::vec3 got = drawn(film).front().weight;
             const std::array<double, 3> want = airyColor(f.ior, f.base_ior, thickness), shown{got.x, got.y, got.z};
-            fmt::print("  {} on {}, {} nm: {:.4f} {:.4f} {:.4f}, Airy {:.4f} {:.4f} {:.4f}\n", f.ior, f.base_ior, thickness, got.x,
-                       got.y, got.z, want[0], want[1], want[2]);
+            fmt::print("  {} on {}, {} nm: {:.4f} {:.4f} {:.4f}, Airy {:.4f} {:.4f} {:.4f}\n", f.ior, f.base_ior,
+                       thickness, got.x, got.y, got.z, want[0], want[1], want[2]);
             for (size_t c = 0; c < 3; ++c)
                 EXPECT_NEAR(shown[c], want[c], swing / 10) << f.ior << ", " << thickness << " nm";
             seen.push_back(shown);

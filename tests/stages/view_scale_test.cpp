@@ -29,7 +29,8 @@ protected:
         builder.floor(3, 0, builder.material(lambert(0.7)));
         builder.box({-0.5f, 0, -0.5f}, {0.5f, 0.6f, 0.2f}, builder.material(lambert(0.5)));
         if (ground > 0)
-            builder.quad({-ground / 2, -1000, ground / 2}, {ground, 0, 0}, {0, 0, -ground}, builder.material(lambert(0.2)));
+            builder.quad({-ground / 2, -1000, ground / 2}, {ground, 0, 0}, {0, 0, -ground},
+                         builder.material(lambert(0.2)));
         const auto path = builder.compile();
         const auto scene = load(path);
         const ShadingPoints shown(device(), *scene, path, camera, kWidth, kHeight);
@@ -55,7 +56,8 @@ TEST_F(ViewScales, AreTheGeometricMeanDistanceOfWhatIsSeen)
             logarithms += std::log(length(p.position - Double3(camera().position))), ++count;
     ASSERT_GT(count, 100);
     ASSERT_LT(count, kWidth * kHeight); // some see nothing
-    EXPECT_NEAR(scale.distance, std::exp(logarithms / count), 1e-5 * scale.distance); // rounding of a thousand logarithms
+    EXPECT_NEAR(scale.distance, std::exp(logarithms / count),
+                1e-5 * scale.distance); // rounding of a thousand logarithms
 }
 
 TEST_F(ViewScales, TakeNoNoticeOfWhatIsNotInView)

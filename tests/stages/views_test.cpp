@@ -380,8 +380,7 @@ TEST_F(Views, ShowHowFarThePictureIsFromAReference)
             reference[i] = {0, 0, 0};
         mean += double(std::max({reference[i].x, reference[i].y, reference[i].z})) / double(reference.size());
     }
-    const auto nearest = [](uint32_t pixel)
-    { return (2 * (pixel / kWidth) + 1) * kWide + 2 * (pixel % kWidth) + 1; };
+    const auto nearest = [](uint32_t pixel) { return (2 * (pixel / kWidth) + 1) * kWide + 2 * (pixel % kWidth) + 1; };
     const std::array<double, 6> errors{0, 1e-4, 0.003, 0.1, 0.9, 20};
     std::vector<double> want(kPixels);
     for (uint32_t i = 0; i < kPixels; ++i)

@@ -1,7 +1,7 @@
 // lumicut-compare as its user meets it: output, exit codes, files.
+#include "image/write_image.h"
 #include "tests/tools/random_image.h"
 #include "tests/tools/run_program.h"
-#include "image/write_image.h"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -52,9 +52,10 @@ TEST_F(Compare, TsvIsOneLineOfTheFiguresOfJson)
     const ProgramRun run = compare(pair() + " --tsv"), json_run = compare(pair() + " --json");
     ASSERT_EQ(run.exit_code, 0) << run.err;
     const nlohmann::json json = nlohmann::json::parse(json_run.out);
-    const std::vector<double> expected{json["mean_ratio"][0], json["mean_ratio"][1], json["mean_ratio"][2], json["relmse"],
-                                       json["relmse_trimmed"], json["ldr_flip"], json["hdr_flip"], 0,
-                                       json["bias_z"], json["mean_difference"]};
+    const std::vector<double> expected{
+        json["mean_ratio"][0],  json["mean_ratio"][1],  json["mean_ratio"][2], json["relmse"],
+        json["relmse_trimmed"], json["ldr_flip"],       json["hdr_flip"],      0,
+        json["bias_z"],         json["mean_difference"]};
     std::istringstream text(run.out);
     std::vector<double> figures;
     for (double figure; text >> figure;)
@@ -152,9 +153,18 @@ TEST_F(CompareSets, TsvIsOneLineOfTheFiguresOfJson)
     ASSERT_EQ(run.exit_code, 0) << run.err;
     const nlohmann::json json = nlohmann::json::parse(json_run.out);
     const nlohmann::json &ratio = json["mean_ratio"], &error = json["mean_ratio_error"];
-    const std::vector<double> expected{1,        json["smallest"]["p"], json["threshold"], json["below_count"], json["test_count"],
-                                       ratio[0], ratio[1],              ratio[2],          error[0],            error[1],
-                                       error[2], 0};
+    const std::vector<double> expected{1,
+                                       json["smallest"]["p"],
+                                       json["threshold"],
+                                       json["below_count"],
+                                       json["test_count"],
+                                       ratio[0],
+                                       ratio[1],
+                                       ratio[2],
+                                       error[0],
+                                       error[1],
+                                       error[2],
+                                       0};
     std::istringstream text(run.out);
     std::vector<double> figures;
     for (double figure; text >> figure;)

@@ -1,8 +1,8 @@
 // Reading and writing pictures.
-#include "tests/tools/random_image.h"
-#include "tests/tools/temporary_folder.h"
 #include "image/read_exr.h"
 #include "image/write_image.h"
+#include "tests/tools/random_image.h"
+#include "tests/tools/temporary_folder.h"
 
 #include <gtest/gtest.h>
 

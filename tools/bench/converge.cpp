@@ -1,10 +1,10 @@
 #include "tools/bench/converge.h"
 
+#include "image/read_exr.h"
+#include "image/write_image.h"
 #include "runtime/renderer.h"
 #include "tools/bench/paths.h"
 #include "tools/compare/metrics.h"
-#include "image/read_exr.h"
-#include "image/write_image.h"
 
 #include <nlohmann/json.hpp>
 
@@ -108,10 +108,11 @@ void printJson(const ConvergeBenchOptions& options, const OpenedPackage& opened,
 
 void print(const ConvergeBenchOptions& options, const Convergence& result)
 {
-    fmt::print("{:>7} {:>11} {:>8} {:>8} {:>8} {:>12} {:>12}\n", "frames", "seconds", "ratio R", "ratio G", "ratio B", "relMSE", "trimmed");
+    fmt::print("{:>7} {:>11} {:>8} {:>8} {:>8} {:>12} {:>12}\n", "frames", "seconds", "ratio R", "ratio G", "ratio B",
+               "relMSE", "trimmed");
     for (const Row& row : result.rows)
-        fmt::print("{:>7} {:>11.4f} {:>8.4f} {:>8.4f} {:>8.4f} {:>12.6g} {:>12.6g}\n", row.frames, row.seconds, row.mean_ratio[0],
-                   row.mean_ratio[1], row.mean_ratio[2], row.relmse, row.relmse_trimmed);
+        fmt::print("{:>7} {:>11.4f} {:>8.4f} {:>8.4f} {:>8.4f} {:>12.6g} {:>12.6g}\n", row.frames, row.seconds,
+                   row.mean_ratio[0], row.mean_ratio[1], row.mean_ratio[2], row.relmse, row.relmse_trimmed);
     if (options.stages)
         for (const StageSamples::Stage& stage : result.stages.stages())
             fmt::print("stage {:<20} {:12.4f} ms\n", stage.name, percentile(stage.ms, 0.5));

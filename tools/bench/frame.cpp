@@ -66,7 +66,8 @@ Measurement measure(const OpenedPackage& opened, const FrameBenchOptions& option
         const auto scope = rec.scope("frame");
         if (light)
             scene.setLight(rec, light->index, movedLight(light->light, scene.info(), int32_t(frame)));
-        renderer.record(rec, camera_moves ? movedCamera(opened.camera, scene.info(), float(frame)) : opened.camera, options.settings, 0);
+        renderer.record(rec, camera_moves ? movedCamera(opened.camera, scene.info(), float(frame)) : opened.camera,
+                        options.settings, 0);
         renderer.display(rec, options.settings, false);
     };
     for (uint32_t frame = 0; frame < options.warm_up + options.frames; ++frame)
@@ -93,9 +94,9 @@ Measurement measure(const OpenedPackage& opened, const FrameBenchOptions& option
 
 RayThroughput::Kind kindOf(const RayTally::Entry& rays)
 {
-    return rays.any_hit               ? RayThroughput::kDiffuseAnyHit
+    return rays.any_hit              ? RayThroughput::kDiffuseAnyHit
            : rays.scope == "primary" ? RayThroughput::kPrimary
-                                      : RayThroughput::kDiffuse;
+                                     : RayThroughput::kDiffuse;
 }
 
 /// Milliseconds that tracing the rays alone would take at the measured throughput.
@@ -112,10 +113,12 @@ double floorMs(const Measurement& result, const RayThroughput& throughput)
     return ms;
 }
 
-void printJson(const FrameBenchOptions& options, const OpenedPackage& opened, const Measurement& result, const RayThroughput& throughput)
+void printJson(const FrameBenchOptions& options, const OpenedPackage& opened, const Measurement& result,
+               const RayThroughput& throughput)
 {
-    const auto times = [](const std::vector<double>& ms)
-    { return nlohmann::ordered_json{{"p50_ms", percentile(ms, 0.5)}, {"p95_ms", percentile(ms, 0.95)}}; };
+    const auto times = [](const std::vector<double>& ms) {
+        return nlohmann::ordered_json{{"p50_ms", percentile(ms, 0.5)}, {"p95_ms", percentile(ms, 0.95)}};
+    };
     nlohmann::ordered_json json{{"schema", "lumicut-bench-frame/1"},
                                 {"device", opened.device->name()},
                                 {"package", options.package.filename().string()},
@@ -140,17 +143,20 @@ void printJson(const FrameBenchOptions& options, const OpenedPackage& opened, co
                            {"diffuse_any_hit", throughput.megaraysPerSecond(RayThroughput::kDiffuseAnyHit)}};
     json["rays"] = nlohmann::ordered_json::array();
     for (const RayTally::Entry& rays : result.rays)
-        json["rays"].push_back(
-            {{"stage", rays.scope}, {"any_hit", rays.any_hit}, {"count", rays.ray_count}, {"floor_ms", floorMs(rays, throughput)}});
+        json["rays"].push_back({{"stage", rays.scope},
+                                {"any_hit", rays.any_hit},
+                                {"count", rays.ray_count},
+                                {"floor_ms", floorMs(rays, throughput)}});
     json["floor_ms"] = floorMs(result, throughput);
     fmt::print("{}\n", json.dump(2));
 }
 
-void print(const FrameBenchOptions& options, const OpenedPackage& opened, const Measurement& result, const RayThroughput& throughput)
+void print(const FrameBenchOptions& options, const OpenedPackage& opened, const Measurement& result,
+           const RayThroughput& throughput)
 {
     fmt::print("{}, {} triangles, {}x{}, mode {}, {} frames after {} of warm-up: {}\n", opened.device->name(),
-               opened.package.triangles().size(), options.width, options.height, options.mode, options.frames, options.warm_up,
-               result.motion);
+               opened.package.triangles().size(), options.width, options.height, options.mode, options.frames,
+               options.warm_up, result.motion);
     const auto row = [](const std::string& name, const std::vector<double>& ms)
     { fmt::print("  {:<20} {:10.3f} {:10.3f}\n", name, percentile(ms, 0.5), percentile(ms, 0.95)); };
     fmt::print("  {:<20} {:>10} {:>10}\n", "GPU ms", "p50", "p95");
@@ -161,8 +167,8 @@ void print(const FrameBenchOptions& options, const OpenedPackage& opened, const 
     fmt::print("  device memory {:.1f} MiB\n", double(result.device_bytes) / (1 << 20));
     fmt::print("  {:<20} {:>10} {:>12} {:>10}\n", "rays of a frame", "count", "Mrays/s", "floor ms");
     for (const RayTally::Entry& rays : result.rays)
-        fmt::print("  {:<20} {:>10} {:>12.2f} {:>10.3f}\n", rays.scope + (rays.any_hit ? " (shadow)" : ""), rays.ray_count,
-                   throughput.megaraysPerSecond(kindOf(rays)), floorMs(rays, throughput));
+        fmt::print("  {:<20} {:>10} {:>12.2f} {:>10.3f}\n", rays.scope + (rays.any_hit ? " (shadow)" : ""),
+                   rays.ray_count, throughput.megaraysPerSecond(kindOf(rays)), floorMs(rays, throughput));
     const double floor = floorMs(result, throughput), frame = result.stages.median("frame");
     fmt::print("  tracing them alone would take {:.3f} ms, {:.1f} % of the median frame\n", floor, 100 * floor / frame);
 }

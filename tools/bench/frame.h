@@ -5,9 +5,9 @@
 
 struct FrameBenchOptions : BenchOptions
 {
-    std::string mode = "gi"; // gi, direct, reference
-    uint32_t frames = 120;   // timed
-    uint32_t warm_up = 8;    // before them
+    std::string mode = "gi";     // gi, direct, reference
+    uint32_t frames = 120;       // timed
+    uint32_t warm_up = 8;        // before them
     std::string moving = "both"; // camera, lights, both, nothing
     Settings settings;
 };

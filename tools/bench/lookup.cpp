@@ -37,8 +37,8 @@ struct ModeResult
 struct Truth
 {
     std::vector<double> irradiance; // as in ModeResult
-    double mean_error = 0;  // mean error that the truth's noise alone would cause
-    double ratio_error = 0; // standard error that it causes in ratios
+    double mean_error = 0;          // mean error that the truth's noise alone would cause
+    double ratio_error = 0;         // standard error that it causes in ratios
 };
 
 /// @return false where the samples are not those of the frames before
@@ -60,7 +60,8 @@ bool addFrame(ModeResult& result, const std::vector<gpu::Sample>& samples, doubl
 }
 
 /// Another seed in every frame, for all but where samples are: the error is not that of one photon map.
-Result<ModeResult> measure(const OpenedPackage& opened, const LookupBenchOptions& options, CutMode mode, std::string_view name)
+Result<ModeResult> measure(const OpenedPackage& opened, const LookupBenchOptions& options, CutMode mode,
+                           std::string_view name)
 {
     Settings settings = options.settings;
     settings.cut_mode = uint32_t(mode);
@@ -82,7 +83,8 @@ Result<ModeResult> measure(const OpenedPackage& opened, const LookupBenchOptions
     {
         stages.add(render(seed));
         if (!addFrame(result, renderer.irradianceSamples(*opened.device), 1.0 / options.repeats))
-            return Error{ExitCode::kInvalid, fmt::format("cut.mode {} gathered at other samples from frame to frame", name)};
+            return Error{ExitCode::kInvalid,
+                         fmt::format("cut.mode {} gathered at other samples from frame to frame", name)};
         if (mode != CutMode::kKnn)
             result.nodes += double(renderer.cutNodeCount(*opened.device)) / options.repeats;
     }
@@ -143,7 +145,9 @@ void printJson(const OpenedPackage& opened, const LookupBenchOptions& options, c
                                 {"samples", results[0].samples.size()},
                                 {"repeats", options.repeats}};
     if (truth)
-        json["traced"] = {{"rays", options.truth_rays}, {"mean_error", truth->mean_error}, {"ratio_standard_error", truth->ratio_error}};
+        json["traced"] = {{"rays", options.truth_rays},
+                          {"mean_error", truth->mean_error},
+                          {"ratio_standard_error", truth->ratio_error}};
     for (const ModeResult& result : results)
     {
         json["modes"].push_back({{"cut_mode", result.name},
@@ -162,18 +166,23 @@ void printJson(const OpenedPackage& opened, const LookupBenchOptions& options, c
 void print(const OpenedPackage& opened, const LookupBenchOptions& options, const std::vector<ModeResult>& results,
            const std::optional<Truth>& truth)
 {
-    fmt::print("{}, {} lookups a frame; irradiance of {} samples, mean of {} frames, against full kNN{}\n", opened.device->name(),
-               results[0].rays, results[0].samples.size(), options.repeats, truth ? " and against path tracing" : "");
-    fmt::print("{:<10} {:>9} {:>12} {:>9} {:>10} {:>9} {:>10} {:>9}{}\n", "cut.mode", "nodes", "ns a lookup", "x faster", "gather ms",
-               "cut ms", "kNN error", "ratio", truth ? fmt::format(" {:>13} {:>9}", "traced error", "ratio") : "");
-    const auto figures = [](const Difference& d) { return fmt::format("{:>8.3f} % {:>9.4f}", 100 * d.mean_error, d.ratio); };
+    fmt::print("{}, {} lookups a frame; irradiance of {} samples, mean of {} frames, against full kNN{}\n",
+               opened.device->name(), results[0].rays, results[0].samples.size(), options.repeats,
+               truth ? " and against path tracing" : "");
+    fmt::print("{:<10} {:>9} {:>12} {:>9} {:>10} {:>9} {:>10} {:>9}{}\n", "cut.mode", "nodes", "ns a lookup",
+               "x faster", "gather ms", "cut ms", "kNN error", "ratio",
+               truth ? fmt::format(" {:>13} {:>9}", "traced error", "ratio") : "");
+    const auto figures = [](const Difference& d)
+    { return fmt::format("{:>8.3f} % {:>9.4f}", 100 * d.mean_error, d.ratio); };
     for (const ModeResult& result : results)
-        fmt::print("{:<10} {:>9.0f} {:>12.3f} {:>9.1f} {:>10.3f} {:>9.3f} {}{}\n", result.name, result.nodes, result.nanoseconds(),
-                   results[0].nanoseconds() / result.nanoseconds(), result.gather_ms, result.cut_ms, figures(result.from_knn),
+        fmt::print("{:<10} {:>9.0f} {:>12.3f} {:>9.1f} {:>10.3f} {:>9.3f} {}{}\n", result.name, result.nodes,
+                   result.nanoseconds(), results[0].nanoseconds() / result.nanoseconds(), result.gather_ms,
+                   result.cut_ms, figures(result.from_knn),
                    truth ? fmt::format("    {}", figures(result.from_truth)) : "");
     if (truth)
-        fmt::print("path tracing with {} rays a sample: its noise alone is a mean error of {:.3f} %, and {:.4f} of a ratio\n",
-                   options.truth_rays, 100 * truth->mean_error, truth->ratio_error);
+        fmt::print(
+            "path tracing with {} rays a sample: its noise alone is a mean error of {:.3f} %, and {:.4f} of a ratio\n",
+            options.truth_rays, 100 * truth->mean_error, truth->ratio_error);
 }
 } // namespace
 
@@ -194,9 +203,12 @@ Status benchLookup(const LookupBenchOptions& options)
             return measured.error();
         ModeResult& result = results.emplace_back(*measured);
         if (result.rays == 0)
-            return Error{ExitCode::kInvalid, "no gather ray was traced: the camera sees no diffuse surface; choose another with --camera"};
+            return Error{ExitCode::kInvalid,
+                         "no gather ray was traced: the camera sees no diffuse surface; choose another with --camera"};
         if (!std::ranges::equal(result.samples, results[0].samples, {}, &gpu::Sample::pixel, &gpu::Sample::pixel))
-            return Error{ExitCode::kInvalid, fmt::format("cut.mode {} gathered at other samples than knn, so they cannot be compared", name)};
+            return Error{
+                ExitCode::kInvalid,
+                fmt::format("cut.mode {} gathered at other samples than knn, so they cannot be compared", name)};
         if (results.size() == 1 && options.truth_rays > 0)
             truth = trace(*opened, options, result.samples);
         result.from_knn = compare(result.irradiance, results[0].irradiance);

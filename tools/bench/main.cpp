@@ -44,42 +44,69 @@ void addSize(CLI::App* command, CommandLine& line)
 void addSettings(CLI::App* command, CommandLine& line)
 {
     command->add_option("--preset", line.preset, "preview, default or high")->capture_default_str();
-    command->add_option("--set", line.assignments, "change a setting, name=value; may be repeated")->allow_extra_args(false);
+    command->add_option("--set", line.assignments, "change a setting, name=value; may be repeated")
+        ->allow_extra_args(false);
 }
 
 void addPackageCommands(CLI::App& app, CommandLine& line)
 {
-    CLI::App* rays = addPackageCommand(app, "rays", "ray throughput: primary, diffuse closest-hit, diffuse any-hit", line.rays);
+    CLI::App* rays =
+        addPackageCommand(app, "rays", "ray throughput: primary, diffuse closest-hit, diffuse any-hit", line.rays);
     addSize(rays, line);
-    rays->add_option("--repeats", line.rays.repeats, "timed runs of each kind")->check(CLI::Range(1, 1000))->capture_default_str();
+    rays->add_option("--repeats", line.rays.repeats, "timed runs of each kind")
+        ->check(CLI::Range(1, 1000))
+        ->capture_default_str();
 
-    CLI::App* frame = addPackageCommand(app, "frame", "what a frame costs by stage, camera and light moving", line.frame);
+    CLI::App* frame =
+        addPackageCommand(app, "frame", "what a frame costs by stage, camera and light moving", line.frame);
     addSize(frame, line);
     addSettings(frame, line);
-    frame->add_option("--mode", line.frame.mode, "what to render")->check(CLI::IsMember({"gi", "direct", "reference"}))->capture_default_str();
-    frame->add_option("--frames", line.frame.frames, "timed frames")->check(CLI::Range(1, 100000))->capture_default_str();
-    frame->add_option("--warm-up", line.frame.warm_up, "frames before them")->check(CLI::Range(1, 1000))->capture_default_str();
+    frame->add_option("--mode", line.frame.mode, "what to render")
+        ->check(CLI::IsMember({"gi", "direct", "reference"}))
+        ->capture_default_str();
+    frame->add_option("--frames", line.frame.frames, "timed frames")
+        ->check(CLI::Range(1, 100000))
+        ->capture_default_str();
+    frame->add_option("--warm-up", line.frame.warm_up, "frames before them")
+        ->check(CLI::Range(1, 1000))
+        ->capture_default_str();
     frame->add_option("--moving", line.frame.moving, "what moves from frame to frame")
         ->check(CLI::IsMember({"both", "camera", "lights", "nothing"}))
         ->capture_default_str();
 
-    CLI::App* converge = addPackageCommand(app, "converge", "seconds and errors against a reference after 1, 2, 4, ... frames", line.converge);
+    CLI::App* converge = addPackageCommand(
+        app, "converge", "seconds and errors against a reference after 1, 2, 4, ... frames", line.converge);
     addSettings(converge, line);
-    converge->add_option("reference", line.converge.reference, "the picture taken as correct (.exr); its size is rendered")->required();
-    converge->add_option("--mode", line.converge.mode, "what to render")->check(CLI::IsMember({"gi", "reference"}))->capture_default_str();
-    converge->add_option("--frames", line.converge.frames, "frames of a run")->check(CLI::Range(1, 1 << 20))->capture_default_str();
-    converge->add_option("--seeds", line.converge.seeds, "runs to average over")->check(CLI::Range(1, 1000))->capture_default_str();
-    converge->add_option("--travel", line.converge.travel, "frames of a swaying camera before each run's first, which is as it comes to rest")
+    converge
+        ->add_option("reference", line.converge.reference, "the picture taken as correct (.exr); its size is rendered")
+        ->required();
+    converge->add_option("--mode", line.converge.mode, "what to render")
+        ->check(CLI::IsMember({"gi", "reference"}))
+        ->capture_default_str();
+    converge->add_option("--frames", line.converge.frames, "frames of a run")
+        ->check(CLI::Range(1, 1 << 20))
+        ->capture_default_str();
+    converge->add_option("--seeds", line.converge.seeds, "runs to average over")
+        ->check(CLI::Range(1, 1000))
+        ->capture_default_str();
+    converge
+        ->add_option("--travel", line.converge.travel,
+                     "frames of a swaying camera before each run's first, which is as it comes to rest")
         ->check(CLI::Range(0, 100000))
         ->capture_default_str();
     converge->add_option("--output", line.converge.output, "write the last picture (.exr)");
     converge->add_flag("--stages", line.converge.stages, "print the stages' median times too");
 
-    CLI::App* lookup = addPackageCommand(app, "lookup", "the illumination cut's lookups against full kNN and path tracing: time and error", line.lookup);
+    CLI::App* lookup = addPackageCommand(
+        app, "lookup", "the illumination cut's lookups against full kNN and path tracing: time and error", line.lookup);
     addSize(lookup, line);
     addSettings(lookup, line);
-    lookup->add_option("--repeats", line.lookup.repeats, "frames of each cut.mode")->check(CLI::Range(1, 1000))->capture_default_str();
-    lookup->add_option("--truth-rays", line.lookup.truth_rays, "paths traced from each sample for its true irradiance; 0: none")
+    lookup->add_option("--repeats", line.lookup.repeats, "frames of each cut.mode")
+        ->check(CLI::Range(1, 1000))
+        ->capture_default_str();
+    lookup
+        ->add_option("--truth-rays", line.lookup.truth_rays,
+                     "paths traced from each sample for its true irradiance; 0: none")
         ->check(CLI::Range(0, 1 << 20))
         ->capture_default_str();
 }
@@ -87,16 +114,29 @@ void addPackageCommands(CLI::App& app, CommandLine& line)
 void addMotion(CLI::App& app, CommandLine& line)
 {
     MotionBenchOptions& options = line.motion;
-    CLI::App* motion = addPackageCommand(app, "motion", "the picture while the camera moves: error, flicker, ghosts, times", options);
+    CLI::App* motion =
+        addPackageCommand(app, "motion", "the picture while the camera moves: error, flicker, ghosts, times", options);
     addSize(motion, line);
     addSettings(motion, line);
-    motion->add_option("--path", options.path, "how the camera moves: sway, orbit, or a file with a camera path")->capture_default_str();
-    motion->add_option("--frames", options.frames, "measured frames")->check(CLI::Range(1, 100000))->capture_default_str();
-    motion->add_option("--fps", options.frames_per_second, "frames a second of the path")->check(CLI::Range(1e-3, 1e6))->capture_default_str();
-    motion->add_option("--warm-up", options.warm_up, "frames before them, on the same path")->check(CLI::Range(0, 100000))->capture_default_str();
-    motion->add_option("--spp", options.sample_count, "samples a pixel of the references")->check(CLI::Range(1, 1 << 20))->capture_default_str();
-    motion->add_option("--mode", options.mode, "what to measure")->check(CLI::IsMember({"gi", "direct", "reference"}))->capture_default_str();
-    motion->add_flag("--ghost,!--no-ghost", options.ghost, "measure the light left after all lights are off, which doubles the time; default yes");
+    motion->add_option("--path", options.path, "how the camera moves: sway, orbit, or a file with a camera path")
+        ->capture_default_str();
+    motion->add_option("--frames", options.frames, "measured frames")
+        ->check(CLI::Range(1, 100000))
+        ->capture_default_str();
+    motion->add_option("--fps", options.frames_per_second, "frames a second of the path")
+        ->check(CLI::Range(1e-3, 1e6))
+        ->capture_default_str();
+    motion->add_option("--warm-up", options.warm_up, "frames before them, on the same path")
+        ->check(CLI::Range(0, 100000))
+        ->capture_default_str();
+    motion->add_option("--spp", options.sample_count, "samples a pixel of the references")
+        ->check(CLI::Range(1, 1 << 20))
+        ->capture_default_str();
+    motion->add_option("--mode", options.mode, "what to measure")
+        ->check(CLI::IsMember({"gi", "direct", "reference"}))
+        ->capture_default_str();
+    motion->add_flag("--ghost,!--no-ghost", options.ghost,
+                     "measure the light left after all lights are off, which doubles the time; default yes");
     motion->add_option("--seed", options.seed, "seed of all random numbers")->capture_default_str();
     motion->add_option("--cache", options.cache, "folder of cached references; default in the user's cache folder");
     motion->add_option("--dump", options.dump, "folder for each frame, its reference and its FLIP map (.png)");
@@ -104,13 +144,17 @@ void addMotion(CLI::App& app, CommandLine& line)
 
 void addPrimitives(CLI::App& app, PrimitiveBenchOptions& options)
 {
-    CLI::App* primitives = app.add_subcommand("primitives", "sort, scan, compaction, segmented reduction: GItems/s at several sizes");
+    CLI::App* primitives =
+        app.add_subcommand("primitives", "sort, scan, compaction, segmented reduction: GItems/s at several sizes");
     primitives->add_option("--items", options.items, "sizes, comma-separated")
         ->delimiter(',')
         ->check(CLI::Range(16, 1 << 26))
         ->capture_default_str();
-    primitives->add_option("--repeats", options.repeats, "timed runs of each kind")->check(CLI::Range(1, 1000))->capture_default_str();
-    primitives->add_option("--workers", options.workers, "what processes a part of the work: workgroups or single threads")
+    primitives->add_option("--repeats", options.repeats, "timed runs of each kind")
+        ->check(CLI::Range(1, 1000))
+        ->capture_default_str();
+    primitives
+        ->add_option("--workers", options.workers, "what processes a part of the work: workgroups or single threads")
         ->check(CLI::IsMember({"auto", "groups", "threads"}))
         ->capture_default_str();
     primitives->add_option("--device", options.device, "index, part of a name, or cpu; default the best suitable one");
@@ -122,9 +166,10 @@ Status readTexts(CommandLine& line)
 {
     uint32_t width = 0, height = 0;
     int used = 0;
-    if (std::sscanf(line.size.c_str(), "%ux%u%n", &width, &height, &used) != 2 || size_t(used) != line.size.size() || width < 1 ||
-        height < 1 || uint64_t(width) * height > 1u << 24)
-        return Error{ExitCode::kUsage, fmt::format("--size {}: WIDTHxHEIGHT is expected, at most 2^24 pixels", line.size)};
+    if (std::sscanf(line.size.c_str(), "%ux%u%n", &width, &height, &used) != 2 || size_t(used) != line.size.size() ||
+        width < 1 || height < 1 || uint64_t(width) * height > 1u << 24)
+        return Error{ExitCode::kUsage,
+                     fmt::format("--size {}: WIDTHxHEIGHT is expected, at most 2^24 pixels", line.size)};
     for (BenchOptions* options : {static_cast<BenchOptions*>(&line.rays), static_cast<BenchOptions*>(&line.frame),
                                   static_cast<BenchOptions*>(&line.lookup), static_cast<BenchOptions*>(&line.motion)})
     {

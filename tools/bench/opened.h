@@ -1,9 +1,9 @@
 // Opening a package for a measurement, and statistics of measurements.
 #pragma once
+#include "image/image.h"
 #include "runtime/camera.h"
 #include "runtime/gpu/recorder.h"
 #include "runtime/renderer.h"
-#include "image/image.h"
 
 #include <filesystem>
 

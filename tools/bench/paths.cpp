@@ -28,7 +28,8 @@ Camera movedCamera(const Camera& camera, const gpu::SceneInfo& info, float frame
     Camera moved = camera;
     moved.forward = turned(camera.forward, camera.up, 5 * kDegree * std::sin(phase));
     const gpu::vec3 right = cross(camera.forward, camera.up);
-    moved.position = camera.position + (radius * (std::cos(phase) - 1)) * right + (radius * std::sin(phase)) * camera.up;
+    moved.position =
+        camera.position + (radius * (std::cos(phase) - 1)) * right + (radius * std::sin(phase)) * camera.up;
     return moved;
 }
 

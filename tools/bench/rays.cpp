@@ -17,7 +17,8 @@ Result<RayThroughput> measureRays(const Device& device, const SceneGpu& scene, c
     const Kernel generate = device.kernel("primary/generate"), diffuse = device.kernel("bench/diffuse");
     const RayQueue primary(device, "bench.primary", count), bounced(device, "bench.bounced", count);
     const Buffer shadow_rays = device.array<gpu::ShadowRay>("bench.shadow_rays", count);
-    const Buffer hits = device.array<gpu::Hit>("bench.hits", count), bounced_hits = device.array<gpu::Hit>("bench.bounced_hits", count);
+    const Buffer hits = device.array<gpu::Hit>("bench.hits", count),
+                 bounced_hits = device.array<gpu::Hit>("bench.bounced_hits", count);
     const Buffer radiance = device.array<gpu::vec3>("bench.radiance", count);
 
     RayThroughput result;
@@ -37,8 +38,12 @@ Result<RayThroughput> measureRays(const Device& device, const SceneGpu& scene, c
             stage.closest(rec, primary, hits, repeat);
         }
         rec.run(diffuse, count, gpu::DiffuseParams{.seed = repeat},
-                {{"Queue", primary.size}, {"Rays", primary.rays}, {"Hits", hits}, {"NextQueue", bounced.size},
-                 {"NextRays", bounced.rays}, {"ShadowRays", shadow_rays}});
+                {{"Queue", primary.size},
+                 {"Rays", primary.rays},
+                 {"Hits", hits},
+                 {"NextQueue", bounced.size},
+                 {"NextRays", bounced.rays},
+                 {"ShadowRays", shadow_rays}});
         stage.close(rec, bounced.size);
         {
             const auto scope = rec.scope(kKinds[1]);
@@ -54,7 +59,8 @@ Result<RayThroughput> measureRays(const Device& device, const SceneGpu& scene, c
     }
     const uint32_t bounced_count = device.download<gpu::QueueSize>(bounced.size, 1)[0].count;
     if (bounced_count == 0)
-        return Error{ExitCode::kInvalid, "the camera sees no surface, so there is nothing to measure; choose another with --camera"};
+        return Error{ExitCode::kInvalid,
+                     "the camera sees no surface, so there is nothing to measure; choose another with --camera"};
     result.rays = {count, bounced_count, bounced_count};
     return result;
 }
@@ -66,17 +72,20 @@ void print(const RayThroughput& result, const Device& device, const package::Pac
     const uint64_t triangles = package.triangles().size();
     if (json)
     {
-        fmt::print("{{\"schema\": \"lumicut-bench-rays/1\", \"device\": \"{}\", \"triangles\": {}", device.name(), triangles);
+        fmt::print("{{\"schema\": \"lumicut-bench-rays/1\", \"device\": \"{}\", \"triangles\": {}", device.name(),
+                   triangles);
         constexpr std::array kKeys{"primary", "diffuse", "diffuse_any_hit"};
         for (size_t kind = 0; kind < kKinds.size(); ++kind)
-            fmt::print(", \"{}_mrays_per_s\": {:.3f}", kKeys[kind], result.megaraysPerSecond(RayThroughput::Kind(kind)));
+            fmt::print(", \"{}_mrays_per_s\": {:.3f}", kKeys[kind],
+                       result.megaraysPerSecond(RayThroughput::Kind(kind)));
         fmt::print("}}\n");
         return;
     }
     fmt::print("{}, {} triangles, {} BVH nodes\n", device.name(), triangles, package.bvhNodes().size());
     for (size_t kind = 0; kind < kKinds.size(); ++kind)
-        fmt::print("  {:<16} {:10.2f} Mrays/s  ({} rays, median {:.3f} ms of {} runs)\n", kKinds[kind], result.megaraysPerSecond(RayThroughput::Kind(kind)),
-                   result.rays[kind], percentile(result.ms[kind], 0.5), result.ms[kind].size());
+        fmt::print("  {:<16} {:10.2f} Mrays/s  ({} rays, median {:.3f} ms of {} runs)\n", kKinds[kind],
+                   result.megaraysPerSecond(RayThroughput::Kind(kind)), result.rays[kind],
+                   percentile(result.ms[kind], 0.5), result.ms[kind].size());
 }
 } // namespace
 

@@ -11,7 +11,13 @@ struct RayBenchOptions : BenchOptions
 
 struct RayThroughput
 {
-    enum Kind { kPrimary, kDiffuse, kDiffuseAnyHit, kKindCount };
+    enum Kind
+    {
+        kPrimary,
+        kDiffuse,
+        kDiffuseAnyHit,
+        kKindCount
+    };
     std::array<std::vector<double>, kKindCount> ms;
     std::array<uint64_t, kKindCount> rays{};
 

@@ -1,11 +1,11 @@
 // lumicut-compare: error metrics and difference pictures of two renderings.
+#include "image/write_image.h"
 #include "tools/cli/documentation.h"
 #include "tools/compare/flip.h"
 #include "tools/compare/metrics.h"
 #include "tools/compare/picture.h"
 #include "tools/compare/read_images.h"
 #include "tools/compare/welch_command.h"
-#include "image/write_image.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -68,9 +68,9 @@ std::string jsonText(const Report& report)
 std::string tsvText(const Report& report)
 {
     const Metrics& m = report.metrics;
-    return fmt::format("{:.6f}\t{:.6f}\t{:.6f}\t{:.6g}\t{:.6g}\t{:.6f}\t{:.6f}\t{}\t{:.6g}\t{:.6g}\n", m.mean_ratio[0], m.mean_ratio[1],
-                       m.mean_ratio[2], m.relmse, m.relmse_trimmed, report.ldr.mean, report.hdr.mean, m.test_nonfinite, m.bias_z,
-                       m.mean_difference);
+    return fmt::format("{:.6f}\t{:.6f}\t{:.6f}\t{:.6g}\t{:.6g}\t{:.6f}\t{:.6f}\t{}\t{:.6g}\t{:.6g}\n", m.mean_ratio[0],
+                       m.mean_ratio[1], m.mean_ratio[2], m.relmse, m.relmse_trimmed, report.ldr.mean, report.hdr.mean,
+                       m.test_nonfinite, m.bias_z, m.mean_difference);
 }
 
 std::string plainText(const Report& report)
@@ -90,9 +90,9 @@ std::string plainText(const Report& report)
                        "HDR-FLIP        {:.6f} ({} exposures, {:.4f} to {:.4f})\n"
                        "LDR-FLIP        {:.6f}\n",
                        report.width, report.height, m.reference_nonfinite, m.test_nonfinite, rgb(m.reference_mean),
-                       rgb(m.test_mean), rgb(m.mean_ratio), m.mean_difference, m.bias_z, m.rmse, m.relmse, m.relmse_trimmed,
-                       report.hdr.mean, report.exposures.count, report.exposures.start, report.exposures.stop,
-                       report.ldr.mean);
+                       rgb(m.test_mean), rgb(m.mean_ratio), m.mean_difference, m.bias_z, m.rmse, m.relmse,
+                       m.relmse_trimmed, report.hdr.mean, report.exposures.count, report.exposures.start,
+                       report.exposures.stop, report.ldr.mean);
 }
 
 Report measure(ImageF& reference, ImageF& test, float scale)
@@ -134,12 +134,12 @@ int run(const Options& options)
 int main(int argc, char** argv)
 {
     Options options;
-    CLI::App app{
-        "Measures the error of the rendering TEST against the rendering REFERENCE, or tests with --welch whether two sets of "
-        "renderings differ by more than noise. All are linear OpenEXR images of one "
-        "size.\nExit codes: 0 done, 1 usage, 2 a file cannot be read or written, 3 not a matching image, "
-        "4 out of memory, 5 unsupported image.",
-        "lumicut-compare"};
+    CLI::App app{"Measures the error of the rendering TEST against the rendering REFERENCE, or tests with --welch "
+                 "whether two sets of "
+                 "renderings differ by more than noise. All are linear OpenEXR images of one "
+                 "size.\nExit codes: 0 done, 1 usage, 2 a file cannot be read or written, 3 not a matching image, "
+                 "4 out of memory, 5 unsupported image.",
+                 "lumicut-compare"};
     app.set_version_flag("--version", "lumicut-compare " LUMICUT_VERSION);
     addDocumentation(app);
     app.add_option("REFERENCE", options.reference, "the image taken as correct (.exr)");
@@ -153,7 +153,8 @@ int main(int argc, char** argv)
         ->expected(4);
     addWelchOptions(app, options.welch);
     app.add_flag("--json", options.json, "print the result as JSON");
-    app.add_flag("--tsv", options.tsv, "print one line of tab-separated figures (see tools/compare/README.md)")->excludes("--json");
+    app.add_flag("--tsv", options.tsv, "print one line of tab-separated figures (see tools/compare/README.md)")
+        ->excludes("--json");
     try
     {
         app.parse(argc, argv);

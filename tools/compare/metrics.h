@@ -17,7 +17,7 @@ struct Metrics
     double rmse = 0;                    // sqrt(mean((t - r)^2)) over pixels and channels
     double relmse = 0;                  // mean((t - r)^2 / (r^2 + kRelMseEpsilon)) over pixels and channels
     double relmse_trimmed = 0;          // the same without the worst 0.1 % of the pixels (rounded up to whole pixels)
-    double mean_difference = 0; // mean(|t - r|) / mean(r) over pixels and channels; 0 where both are black
+    double mean_difference = 0;         // mean(|t - r|) / mean(r) over pixels and channels; 0 where both are black
     double bias_z = 0;        // mean over block_count blocks of (block mean of t - r), divided by its standard error;
                               // beyond +-3 the means differ by more than noise explains
     uint32_t block_count = 0; // up to 16 x 16

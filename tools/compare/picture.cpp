@@ -108,7 +108,8 @@ Picture pValueMap(const WelchResult& result)
     for (uint32_t tile = 0; tile < result.columns * result.rows; ++tile)
     {
         const auto first = result.tests.begin() + std::ptrdiff_t(3 * tile);
-        const WelchTest& least = *std::min_element(first, first + 3, [](const auto& x, const auto& y) { return x.p < y.p; });
+        const WelchTest& least =
+            *std::min_element(first, first + 3, [](const auto& x, const auto& y) { return x.p < y.p; });
         const uint8_t level = uint8_t(255.0 * least.p + 0.5);
         Bytes color{level, level, level};
         if (least.p < result.threshold)

@@ -1,8 +1,8 @@
 // The picture that shows where two renderings differ.
 #pragma once
+#include "image/image.h"
 #include "tools/compare/flip.h"
 #include "tools/compare/welch.h"
-#include "image/image.h"
 
 #include <optional>
 

@@ -1,9 +1,9 @@
 #include "tools/compare/welch_command.h"
 
+#include "image/write_image.h"
 #include "tools/compare/metrics.h"
 #include "tools/compare/picture.h"
 #include "tools/compare/read_images.h"
-#include "image/write_image.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>

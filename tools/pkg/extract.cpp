@@ -57,7 +57,8 @@ std::vector<uint8_t> decoded(const lumicut::fb::TexturePage& page, std::span<con
                                           : blocks::decodeBc7(std::span<const std::byte, 16>(block, 16));
         for (uint32_t k = 0; k < 16; ++k)
         {
-            const size_t x = i % across * blocks::kSide + k % blocks::kSide, y = i / across * blocks::kSide + k / blocks::kSide;
+            const size_t x = i % across * blocks::kSide + k % blocks::kSide,
+                         y = i / across * blocks::kSide + k / blocks::kSide;
             if (x < page.width() && y < page.height())
                 std::memcpy(&rgba[4 * (y * page.width() + x)], texels[k].data(), 4);
         }
@@ -70,9 +71,10 @@ Status extractTexture(const package::Package& package, const Wanted& wanted, con
     const auto& pages = *package.meta().texture_pages();
     const auto [page, layer] = wanted.number;
     if (wanted.number_count != 2 || page >= pages.size() || layer >= pages[page]->layers())
-        return Error{ExitCode::kUsage, fmt::format("there is no such texture; say texture/PAGE/LAYER as `lumicut-pkg info` "
-                                                   "counts them from 0 ({} pages)",
-                                                   pages.size())};
+        return Error{ExitCode::kUsage,
+                     fmt::format("there is no such texture; say texture/PAGE/LAYER as `lumicut-pkg info` "
+                                 "counts them from 0 ({} pages)",
+                                 pages.size())};
     const lumicut::fb::TexturePage& p = *pages[page];
     const uint64_t bytes = package::levelBytes(p.encoding(), p.width(), p.height()); // of a layer of level 0
     const std::span<const std::byte> stored = package.texturePage(page).subspan(layer * bytes, bytes);
@@ -101,11 +103,12 @@ Status extractChunk(const std::filesystem::path& path, const Wanted& wanted, con
     if (!container)
         return container.error();
     for (size_t i = 0; i < container->table.size(); ++i)
-        if (package::chunkName(container->table[i].id) == wanted.name && container->table[i].index == wanted.number[0] &&
-            wanted.number_count < 2)
+        if (package::chunkName(container->table[i].id) == wanted.name &&
+            container->table[i].index == wanted.number[0] && wanted.number_count < 2)
             return writeFile(output, asBytes(container->chunks[i]));
-    return Error{ExitCode::kUsage, "the package has nothing of this name; say geometry, environment, texture/PAGE/LAYER, or "
-                                   "a chunk that `lumicut-pkg info` lists, as in NODE or TEXP/1"};
+    return Error{ExitCode::kUsage,
+                 "the package has nothing of this name; say geometry, environment, texture/PAGE/LAYER, or "
+                 "a chunk that `lumicut-pkg info` lists, as in NODE or TEXP/1"};
 }
 
 Status checkSuffix(const Wanted& wanted, const std::filesystem::path& output)

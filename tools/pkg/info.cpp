@@ -175,8 +175,9 @@ void printTables(const package::Package& package)
 {
     const lumicut::fb::Meta& meta = package.meta();
     for (const lumicut::fb::TexturePage* page : *meta.texture_pages())
-        fmt::print("texture page {} layers of {} x {}, {} levels, {}{}\n", page->layers(), page->width(), page->height(),
-                   page->levels(), lumicut::fb::EnumNameTextureEncoding(page->encoding()), page->tiled() ? ", tiles" : "");
+        fmt::print("texture page {} layers of {} x {}, {} levels, {}{}\n", page->layers(), page->width(),
+                   page->height(), page->levels(), lumicut::fb::EnumNameTextureEncoding(page->encoding()),
+                   page->tiled() ? ", tiles" : "");
     for (const package::ChunkEntry& entry : package.chunks())
         fmt::print("chunk        {} {:<2} {:>12} bytes{}\n", package::chunkName(entry.id), entry.index, entry.raw_bytes,
                    entry.codec == package::Codec::kZstd ? fmt::format(", {} compressed", entry.stored_bytes) : "");

@@ -50,8 +50,9 @@ void declare(CLI::App& app, Arguments& arguments)
     CLI::App* extract_app = app.add_subcommand("extract", "Write one part of a package to a file");
     extract_app->add_option("FILE", arguments.file, "Package (.lumi)")->required();
     extract_app
-        ->add_option("WHAT", arguments.what,
-                     "geometry (.glb), environment (.exr), texture/PAGE/LAYER (.png), or a chunk's raw bytes: NODE, TEXP/1")
+        ->add_option(
+            "WHAT", arguments.what,
+            "geometry (.glb), environment (.exr), texture/PAGE/LAYER (.png), or a chunk's raw bytes: NODE, TEXP/1")
         ->required();
     extract_app->add_option("-o,--output", arguments.output, "File to write")->required();
 

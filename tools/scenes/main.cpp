@@ -1,7 +1,7 @@
 // lumicut-scenes: writes its scenes as binary glTF files. The same program writes the same bytes.
 #include "image/write_image.h"
-#include "tools/scenes/scenes.h"
 #include "tools/cli/documentation.h"
+#include "tools/scenes/scenes.h"
 
 #include <fmt/format.h>
 
@@ -65,7 +65,8 @@ int main(int argc, char** argv)
     CLI::Option* const some =
         app.add_option("NAME", names, "which scenes, of those below (all)")->check(CLI::IsMember(known));
     uint32_t terrain_triangles = 0;
-    app.add_option("--terrain", terrain_triangles, "instead write terrain.glb, a landscape of about this many triangles")
+    app.add_option("--terrain", terrain_triangles,
+                   "instead write terrain.glb, a landscape of about this many triangles")
         ->check(CLI::Range(1000, 50'000'000))
         ->excludes(some);
     try

@@ -38,18 +38,21 @@ std::vector<MaterialDescription> layered()
         m.extensions = std::move(extensions);
         return m;
     };
-    MaterialDescription prism = described("dispersion", {1, 1, 1}, 0, 0, {{"KHR_materials_dispersion", {{"dispersion", 3}}}});
+    MaterialDescription prism =
+        described("dispersion", {1, 1, 1}, 0, 0, {{"KHR_materials_dispersion", {{"dispersion", 3}}}});
     prism.transmission = 1;
     prism.thickness = 2 * kRadius;
     prism.ior = 1.7f;
     return {
-        described("smooth coat", {0.55f, 0.02f, 0.02f}, 0, 0.6f, {{"KHR_materials_clearcoat", {{"clearcoatFactor", 1}}}}),
+        described("smooth coat", {0.55f, 0.02f, 0.02f}, 0, 0.6f,
+                  {{"KHR_materials_clearcoat", {{"clearcoatFactor", 1}}}}),
         described("rough coat", {0.02f, 0.15f, 0.5f}, 0.8f, 0.5f,
                   {{"KHR_materials_clearcoat", {{"clearcoatFactor", 1}, {"clearcoatRoughnessFactor", 0.2}}}}),
         described("sheen", {0.03f, 0.05f, 0.2f}, 0, 1,
                   {{"KHR_materials_sheen", {{"sheenColorFactor", {0.6, 0.65, 0.9}}, {"sheenRoughnessFactor", 0.4}}}}),
         described("plain", {0.5f, 0.5f, 0.5f}, 0, 0.5f, {}),
-        described("brushed", {0.9f, 0.75f, 0.5f}, 1, 0.25f, {{"KHR_materials_anisotropy", {{"anisotropyStrength", 0.8}}}}),
+        described("brushed", {0.9f, 0.75f, 0.5f}, 1, 0.25f,
+                  {{"KHR_materials_anisotropy", {{"anisotropyStrength", 0.8}}}}),
         described("film", {0.7f, 0.7f, 0.7f}, 1, 0.1f,
                   {{"KHR_materials_iridescence",
                     {{"iridescenceFactor", 1}, {"iridescenceIor", 1.4}, {"iridescenceThicknessMaximum", 420}}}}),

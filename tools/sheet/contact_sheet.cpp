@@ -9,8 +9,9 @@ constexpr uint8_t kGround = 32;
 constexpr uint32_t kMargin = 2; // pixels around a cell
 
 /// 3 x 5 pixels a digit, a row three bits, the left one highest.
-constexpr uint8_t kDigits[10][5] = {{7, 5, 5, 5, 7}, {2, 6, 2, 2, 7}, {7, 1, 7, 4, 7}, {7, 1, 3, 1, 7}, {5, 5, 7, 1, 1},
-                                    {7, 4, 7, 1, 7}, {7, 4, 7, 5, 7}, {7, 1, 1, 2, 2}, {7, 5, 7, 5, 7}, {7, 5, 7, 1, 7}};
+constexpr uint8_t kDigits[10][5] = {{7, 5, 5, 5, 7}, {2, 6, 2, 2, 7}, {7, 1, 7, 4, 7}, {7, 1, 3, 1, 7},
+                                    {5, 5, 7, 1, 1}, {7, 4, 7, 1, 7}, {7, 4, 7, 5, 7}, {7, 1, 1, 2, 2},
+                                    {7, 5, 7, 5, 7}, {7, 5, 7, 1, 7}};
 
 void drawLabel(const std::string& label, uint32_t x, uint32_t y, uint32_t most_width, Thumbnail& sheet)
 {
@@ -25,7 +26,8 @@ void drawLabel(const std::string& label, uint32_t x, uint32_t y, uint32_t most_w
         for (uint32_t row = 0; row < 5 * kScale; ++row)
             for (uint32_t column = 0; column < 3 * kScale; ++column)
                 if ((kDigits[c - '0'][row / kScale] >> (2 - column / kScale) & 1) != 0)
-                    std::fill_n(sheet.rgb.begin() + 3 * std::ptrdiff_t((y + row) * size_t(sheet.width) + x + column), 3, uint8_t(255));
+                    std::fill_n(sheet.rgb.begin() + 3 * std::ptrdiff_t((y + row) * size_t(sheet.width) + x + column), 3,
+                                uint8_t(255));
         x += 4 * kScale;
     }
 }

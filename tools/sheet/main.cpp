@@ -23,8 +23,8 @@ Result<Thumbnail> readThumbnail(const std::string& path)
     int width = 0;
     int height = 0;
     int channels = 0;
-    const std::unique_ptr<stbi_uc, decltype(&stbi_image_free)> texels(stbi_load(path.c_str(), &width, &height, &channels, 3),
-                                                                     &stbi_image_free);
+    const std::unique_ptr<stbi_uc, decltype(&stbi_image_free)> texels(
+        stbi_load(path.c_str(), &width, &height, &channels, 3), &stbi_image_free);
     if (texels == nullptr)
         return std::filesystem::exists(path) ? Error{ExitCode::kInvalid, "it is no PNG picture"}
                                              : Error{ExitCode::kIo, "it does not exist"};

@@ -24,9 +24,9 @@ struct BsdfDrawParams
 {
     uint count;
     uint seed;
-    uint what;            // kDraw*
-    uint front;           // 1: seen from the front
-    uint flags;           // kMaterial*
+    uint what;  // kDraw*
+    uint front; // 1: seen from the front
+    uint flags; // kMaterial*
     float base_color;
     float metallic;
     float roughness;
