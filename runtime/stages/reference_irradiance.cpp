@@ -67,9 +67,8 @@ std::vector<ReferenceIrradiance::Estimate> ReferenceIrradiance::measure(std::spa
     const uint32_t count = uint32_t(samples.size()), path_count = count * pass_rays_;
     check(count > 0 && count <= max_samples_, "{} samples where at most {} were promised", count, max_samples_);
     const Buffer points = device_.upload("reference_irradiance.samples", samples);
-    const std::array<gpu::QueueSize, 2> sizes{gpu::queueSize(count), gpu::queueSize(0)};
-    const Buffer size = device_.upload("reference_irradiance.size", std::span(sizes).first(1));
-    const Buffer kept = device_.upload("reference_irradiance.kept", std::span(sizes).last(1));
+    const gpu::QueueSize queue_size = gpu::queueSize(count);
+    const Buffer size = device_.upload("reference_irradiance.size", std::span(&queue_size, 1));
     std::vector<Sum> sums(count);
     Recorder rec(device_);
     for (uint32_t pass = 0; pass < pass_count_; ++pass)
@@ -82,7 +81,6 @@ std::vector<ReferenceIrradiance::Estimate> ReferenceIrradiance::measure(std::spa
                  {"Queue", queue_.size},
                  {"Rays", queue_.rays},
                  {"States", states_},
-                 {"KeptSize", kept},
                  {"Legs", no_legs_},
                  {"Directions", directions_}});
         const Buffer& radiance = reference_.recordLeft(
