@@ -95,5 +95,5 @@ gpu::CameraParams cameraParams(const Camera& camera, uint32_t width, uint32_t he
             .sample_count = 1,
             .first_sample = 0,
             .seed = 0,
-            .jitter = {-1, -1}};
+            .jitter = {}};
 }

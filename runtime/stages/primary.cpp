@@ -18,7 +18,7 @@ constexpr float kMovingShare = 0.5f;
 
 float PrimaryStage::textureWidth(const gpu::CameraParams& camera)
 {
-    const float share = camera.jitter.x < 0 ? 1 / float(camera.first_sample + 1) : kMovingShare;
+    const float share = camera.jitter.x > 0 ? kMovingShare : 1 / float(camera.first_sample + 1);
     return kTextureBlur * pixelSide(camera) * share;
 }
 

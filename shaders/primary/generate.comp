@@ -21,6 +21,6 @@ void main()
     uint sample_ = path / pixel_count, pixel = path - sample_ * pixel_count;
     uint row = pixel / params.width, column = pixel - row * params.width;
     Sampler s = Sampler(hash(params.seed, pixel), params.first_sample + sample_, 0u);
-    vec2 within = params.jitter.x < 0.0 ? nextPair(s) : params.jitter;
+    vec2 within = params.jitter.x > 0.0 ? params.jitter : nextPair(s);
     rays[path] = cameraRay(params, vec2(column, row) + within, path);
 }

@@ -20,7 +20,7 @@ struct CameraParams // a ray through image position (x, y) in [-1,1]^2, y up, go
     uint sample_count; // rays a pixel in this dispatch; path = sample * width * height + pixel
     uint first_sample; // index of the first of them in the pixel's sequence
     uint seed;
-    vec2 jitter; // of every pixel's ray within the pixel, 0..1; < 0: each pixel's own, by its sampler
+    vec2 jitter; // of every pixel's ray within the pixel, between 0 and 1; 0: each pixel's own, by its sampler
 };
 GPU_SIZE(CameraParams, 88);
 

@@ -31,7 +31,7 @@ LightSignal signalOf(vec3 light, vec3 reflectance, float lobe)
 Motion motionOf(uint pixel, ShadingPoint point)
 {
     CameraParams camera = views.now;
-    vec2 at = vec2(pixel % camera.width, pixel / camera.width) + camera.jitter;
+    vec2 at = vec2(pixel % camera.width, pixel / camera.width) + (camera.jitter.x > 0.0 ? camera.jitter : vec2(0.5));
     Ray ray = cameraRay(camera, at, pixel);
     float distance_ = kInfinity;
     if (point.slot != kNone)
