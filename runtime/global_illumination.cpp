@@ -96,7 +96,7 @@ GlobalIllumination::GlobalIllumination(const Device& device, const SceneGpu& sce
     if (GuideStage::helps(scene))
         guide_.emplace(device, scene, settings.photon_count);
     const bool filters = settings.denoise_passes > 0 && (direct_.isNoisy() || has_specular_);
-    if (filters || goesOn(settings))
+    if (filters || settings.history_frames > 0 || settings.antialias_frames > 0)
         signals_.emplace(device, scene, width * height);
     if (settings.history_frames > 0)
         history_.emplace(device, width * height);
@@ -112,8 +112,8 @@ FrameTraits GlobalIllumination::traits() const
             .reflects_roughly = scene_.reflectsRoughly(),
             .has_noisy_direct = direct_.isNoisy(),
             .has_guide = guide_.has_value(),
-            .gathers_at_pixels = gather_.suitsPixels(width_ * height_),
-            .pixel_rays = gather_.raysPerPixel(width_ * height_)};
+            .gathers_at_pixels = gather_.suitsPixels(point_count_),
+            .pixel_rays = gather_.raysPerPixel(point_count_)};
 }
 
 const Buffer& GlobalIllumination::record(Recorder& rec, const RayStage& rays, const FrameInfo& frame,

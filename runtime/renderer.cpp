@@ -97,9 +97,13 @@ void Renderer::record(Recorder& rec, const Camera& camera, const Settings& setti
 {
     check(sample_count >= 1 && sample_count <= max_batch_, "{} samples in a frame of at most {}", sample_count,
           max_batch_);
-    FrameInfo frame = beginFrame(rec, camera, settings, seed);
+    shows_error_ = gi_ && error_ && settings.view == gpu::kViewError;
+    Settings drawn = settings;
+    if (settings.view == gpu::kViewError) // lies over the picture
+        drawn.view = gpu::kViewNone;
+    FrameInfo frame = beginFrame(rec, camera, drawn, seed);
     if (gi_)
-        return recordGi(rec, frame, settings);
+        return recordGi(rec, frame, drawn);
     if (!reference_)
         return recordDirect(rec, frame, settings);
     frame.camera.sample_count = sample_count;
@@ -126,17 +130,13 @@ void Renderer::recordDirect(Recorder& rec, const FrameInfo& frame, const Setting
 
 void Renderer::recordGi(Recorder& rec, const FrameInfo& frame, const Settings& settings)
 {
-    shows_error_ = error_ && settings.view == gpu::kViewError;
-    Settings drawn = settings;
-    if (settings.view == gpu::kViewError)
-        drawn.view = gpu::kViewNone;
-    const Buffer& picture = gi_->record(rec, rays_, frame, drawn);
+    const Buffer& picture = gi_->record(rec, rays_, frame, settings);
     resolve_.accumulate(rec, picture, width_ * height_, 1);
-    is_antialiased_ = antialias_ && drawn.view == gpu::kViewNone && drawn.antialias_frames > 0;
+    is_antialiased_ = antialias_ && settings.view == gpu::kViewNone && settings.antialias_frames > 0;
     if (is_antialiased_ && frame.stands())
         antialias_->recordStanding(rec, resolve_.sum(), resolve_.sampleCount(), width_ * height_);
     else if (is_antialiased_)
-        antialias_->recordMoving(rec, picture, gi_->motions(), width_, height_, drawn.antialias_frames,
+        antialias_->recordMoving(rec, picture, gi_->motions(), width_, height_, settings.antialias_frames,
                                  frame.previous.has_value());
     if (shows_error_)
         error_->record(rec, resolve_.sum(), resolve_.sampleCount(), width_, height_);

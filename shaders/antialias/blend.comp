@@ -78,7 +78,9 @@ void main()
     bool known = from.x != kNoMotion && all(greaterThanEqual(at, vec2(-0.5))) && all(lessThan(at, vec2(size()) - 0.5));
     float frames = known ? min(old_counts[pixelAt(ivec2(floor(at + 0.5)))], float(params.most_frames)) : 0.0;
     vec3 old = known ? lastPicture(at) : own;
-    if (frames > 0.0 && count > 0.0 && isFinite(old))
+    if (!(count > 0.0) || !isFinite(old))
+        frames = 0.0;
+    if (frames > 0.0)
     {
         mean /= count;
         vec3 reach = kWithin * sqrt(max(squares / count - mean * mean, vec3(0.0)));
@@ -88,6 +90,7 @@ void main()
             old = max(fromYCoCg(mean + d / most), vec3(0.0));
         own = isFinite(own) ? mix(old, own, 1.0 / (frames + 1.0)) : old;
     }
-    shown[pixel] = own;
-    counts[pixel] = frames + 1.0;
+    bool fine = isFinite(own);
+    shown[pixel] = fine ? own : vec3(0.0);
+    counts[pixel] = fine ? frames + 1.0 : 0.0;
 }

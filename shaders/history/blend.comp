@@ -37,19 +37,29 @@ struct Past
     Memory direct, indirect, glossy, caustics;
 };
 
-void addTap(inout Memory sum, uvec2 words, float weight)
+struct Taps // weighted sums over the pixels around
+{
+    Memory sum;
+    float weights;
+};
+
+const Taps kNoTaps = Taps(Memory(vec3(0.0), 0.0, 0.0), 0.0);
+
+void addTap(inout Taps taps, uvec2 words, float weight)
 {
     Memory m = unpackMemory(words);
-    sum.light += weight * m.light;
-    sum.frames += weight * m.frames;
-    sum.spread += weight * m.spread;
+    if (m.frames == 0.0) // a pixel of that surface which has no such light: nothing is known, which is not black
+        return;
+    taps.sum.light += weight * m.light;
+    taps.sum.frames += weight * m.frames;
+    taps.sum.spread += weight * m.spread;
+    taps.weights += weight;
 }
 
-void normalizeBy(inout Memory m, float weights)
+Memory meanOf(Taps taps)
 {
-    m.light /= weights;
-    m.frames /= weights;
-    m.spread /= weights;
+    Memory m = taps.sum;
+    return taps.weights < kLeastTap ? kNoMemory : Memory(m.light / taps.weights, m.frames / taps.weights, m.spread / taps.weights);
 }
 
 bool sameSurface(SurfaceGuide now, vec3 normal, uvec4 old, float pixel)
@@ -60,13 +70,13 @@ bool sameSurface(SurfaceGuide now, vec3 normal, uvec4 old, float pixel)
            dot(octahedralToUnit(unpackSnorm4x8(old.w).xy), normal) >= kSameFacing;
 }
 
-/// @return false where none of the four pixels around where it was saw the surface
-bool recall(uint pixel, out Past past)
+/// What those of the four pixels around where it was remember that saw the surface.
+Past recall(uint pixel)
 {
-    past = Past(Memory(vec3(0.0), 0.0, 0.0), Memory(vec3(0.0), 0.0, 0.0), Memory(vec3(0.0), 0.0, 0.0), Memory(vec3(0.0), 0.0, 0.0));
+    Taps direct = kNoTaps, indirect_ = kNoTaps, glossy = kNoTaps, caustics_ = kNoTaps;
     Motion motion = motions[pixel];
-    if (params.has_previous == 0u || motion.from.x == kNoMotion)
-        return false;
+    if (params.has_previous == 0u || motion.from.x == kNoMotion || !(motion.distance < kInfinity))
+        return Past(kNoMemory, kNoMemory, kNoMemory, kNoMemory);
     ivec2 size = ivec2(params.width, params.point_count / params.width);
     vec2 at = vec2(pixel % params.width, pixel / params.width) + motion.from;
     ivec2 corner = ivec2(floor(at));
@@ -74,7 +84,6 @@ bool recall(uint pixel, out Past past)
     SurfaceGuide guide = guides[pixel];
     vec3 normal = octahedralToUnit(unpackSnorm4x8(guide.normals).xy);
     float footprint = params.pixel_side + params.pixel_angle * motion.distance;
-    float weights = 0.0;
     for (int k = 0; k < 4; ++k)
     {
         ivec2 step_ = ivec2(k & 1, k >> 1), place = corner + step_;
@@ -86,19 +95,12 @@ bool recall(uint pixel, out Past past)
         if (!(weight > 0.0) || !sameSurface(guide, normal, texelFetch(OldGuides, old), footprint))
             continue;
         uvec4 first = texelFetch(OldHistory, 2 * old), second = texelFetch(OldHistory, 2 * old + 1);
-        addTap(past.direct, first.xy, weight);
-        addTap(past.indirect, first.zw, weight);
-        addTap(past.glossy, second.xy, weight);
-        addTap(past.caustics, second.zw, weight);
-        weights += weight;
+        addTap(direct, first.xy, weight);
+        addTap(indirect_, first.zw, weight);
+        addTap(glossy, second.xy, weight);
+        addTap(caustics_, second.zw, weight);
     }
-    if (weights < kLeastTap)
-        return false;
-    normalizeBy(past.direct, weights);
-    normalizeBy(past.indirect, weights);
-    normalizeBy(past.glossy, weights);
-    normalizeBy(past.caustics, weights);
-    return true;
+    return Past(meanOf(direct), meanOf(indirect_), meanOf(glossy), meanOf(caustics_));
 }
 
 /// The mean of the past, of at most `most` frames, and of `light`.
@@ -112,6 +114,17 @@ Memory remember(Memory past, vec3 light, float most)
     return Memory(mean, frames + 1.0, max(square_ / max(square(luminance(mean)), 1e-30), 1.0));
 }
 
+/// Light over reflectance. Of a channel in which the pixel reflects nothing, as dispersion leaves one a frame, it tells nothing:
+/// the past does, else another channel.
+vec3 lightOver(vec3 light, vec3 reflectance, Memory past)
+{
+    vec3 ratio = light / reflectance;
+    bvec3 unknown = lessThanEqual(reflectance, vec3(1.01 * kLeastReflectance)); // a half may have rounded it up
+    if (all(unknown)) // light by another lobe, of which this mean is as good as any
+        return ratio;
+    return mix(ratio, past.frames > 0.0 ? past.light : vec3(maxComponent(ratio)), unknown);
+}
+
 /// Standard error of the mean's brightness; < 0 if there are too few frames.
 float errorOf(Memory m)
 {
@@ -123,7 +136,7 @@ Memory rememberSignal(inout uvec4 bits, Memory past, float most)
     Signal s = unpackSignal(bits);
     if (s.lobe == 0.0)
         return kNoMemory;
-    Memory m = remember(past, s.light / s.reflectance, most);
+    Memory m = remember(past, lightOver(s.light, s.reflectance, past), most);
     s.light = m.light * s.reflectance;
     s.error = errorOf(m);
     LightSignal packed = packSignal(s);
@@ -133,7 +146,7 @@ Memory rememberSignal(inout uvec4 bits, Memory past, float most)
 
 Memory rememberDiffuse(inout vec3 light, vec3 reflectance, Memory past)
 {
-    Memory m = remember(past, light / reflectance, float(params.most_frames));
+    Memory m = remember(past, lightOver(light, reflectance, past), float(params.most_frames));
     light = m.light * reflectance;
     return m;
 }
@@ -143,9 +156,7 @@ void main()
     uint pixel = gl_GlobalInvocationID.x;
     if (pixel >= params.point_count)
         return;
-    Past past;
-    if (!recall(pixel, past))
-        past = Past(kNoMemory, kNoMemory, kNoMemory, kNoMemory);
+    Past past = recall(pixel);
     float most = float(params.most_frames);
     uint random = hash(params.seed, pixel);
     vec3 reflectance = max(diffuse_points[pixel].reflectance, vec3(kLeastReflectance));

@@ -23,7 +23,7 @@ HistoryLight packMemory(Memory m, uint random)
     int exponent = clamp(int(ceil(log2(largest))), -120, 120);
     uvec3 draws = uvec3(random & 1023u, random >> 10 & 1023u, random >> 20 & 1023u);
     uvec3 parts = uvec3(clamp(m.light * exp2(-float(exponent)) * kMantissa + (vec3(draws) + 0.5) / 1024.0, vec3(0.0), vec3(kMantissa)));
-    uint biased = uint(exponent + 128), frames = uint(clamp(m.frames, 0.0, float(kMostHistoryFrames)));
+    uint biased = uint(exponent + 128), frames = uint(clamp(m.frames + 0.5, 0.0, float(kMostHistoryFrames)));
     uint spread = uint(clamp(log2(max(m.spread, 1.0)) * kSpreadSteps + 0.5, 0.0, 255.0));
     return HistoryLight(uvec2(parts.x | parts.y << 14 | biased << 28, parts.z | biased >> 4 << 14 | frames << 18 | spread << 24));
 }

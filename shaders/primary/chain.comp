@@ -21,6 +21,8 @@ layout(set = 1, binding = 7, scalar) writeonly buffer DiffusePoints { DiffusePoi
 #include "shaders/lib/hit.glsl"
 #include "shaders/lib/ray.glsl"
 
+const float kAllMirror = 0.9999; // what reflects as much has nothing below it: the rest is rounding
+
 /// At the first vertex the mirrored part of the light goes its own way, to the pixel's second point: what is seen in a pane and
 /// what is seen through it are both there in every frame. @param random picks among mirrors
 void split(Ray ray, PathVertex v, float scattered, float mirror, vec3 throughput, uint medium, float width, float random)
@@ -61,7 +63,7 @@ vec3 meetSurface(Ray ray, Hit hit, inout ShadingPoint point, inout DiffusePoint 
     Bsdf b = v.bsdf;
     LobeProbabilities p = lobeProbabilities(b, v.wo);
     float scattered = p.diffuse + glossyProbability(b, p), mirror = mirrorProbability(b, p), rest = 1.0;
-    if (params.splits != 0u && mirror > 0.0 && mirror < 1.0)
+    if (params.splits != 0u && mirror > 0.0 && mirror < kAllMirror)
     {
         rest = 1.0 - mirror;
         split(ray, v, scattered, mirror, throughput, medium, point.width, random.x);

@@ -70,6 +70,6 @@ void main()
         smooth_normal = v.surface.smooth_normal;
         normal = v.surface.normal;
     }
-    guides[pixel] = SurfaceGuide(point.position, packSnorm4x8(vec4(unitToOctahedral(smooth_normal), unitToOctahedral(normal))));
+    guides[pixel] = SurfaceGuide(point.slot != kNone ? point.position : vec3(kInfinity), packSnorm4x8(vec4(unitToOctahedral(smooth_normal), unitToOctahedral(normal))));
     motions[pixel] = motionOf(pixel, point);
 }
