@@ -32,6 +32,16 @@ float shrunkRadius(float radius, uint32_t frame)
     return radius * float(std::exp(0.5 * log_ratio));
 }
 
+/// Whether mirrored light gets points of its own: where there is such light, and the device binds and dispatches two a pixel.
+bool splitsMirrors(const Device& device, const SceneGpu& scene, uint64_t pixel_count)
+{
+    const VkPhysicalDeviceLimits& limits = device.limits();
+    const uint64_t range =
+        std::min<uint64_t>(limits.maxStorageBufferRange, limits.maxTexelBufferElements * kTexelBytes);
+    const uint64_t threads = uint64_t(limits.maxComputeWorkGroupCount[0]) * gpu::kRaysGroupSize;
+    return scene.hasSmoothLayers() && 2 * pixel_count <= std::min(range / sizeof(gpu::ShadingPoint), threads);
+}
+
 /// Photons that a map of `wanted` has room for: no more than this device's buffers hold of what is made of each.
 uint32_t photonCapacity(const Device& device, uint64_t wanted)
 {
@@ -78,10 +88,11 @@ GlobalIllumination::GlobalIllumination(const Device& device, const SceneGpu& sce
     : scene_(scene), width_(width), height_(height), has_specular_(scene.hasFeature(gpu::kFeatureSpecular)),
       has_caustic_targets_(scene.info().caustic_target_count > 0),
       has_mirrors_(has_caustic_targets_ || scene.hasFeature(gpu::kFeatureTransmission | gpu::kFeatureThin)),
-      point_count_(width * height * (scene.hasSmoothLayers() ? 2 : 1)), light_(device, point_count_),
-      primary_(device, scene, width * height, scene.hasSmoothLayers()), view_scale_(device, scene),
-      direct_(device, scene, point_count_), photons_(device, scene, PhotonKind::kGlobal, settings.photon_count,
-                                                     photonCapacity(device, settings.photon_capacity)),
+      point_count_(width * height * (splitsMirrors(device, scene, width * height) ? 2 : 1)),
+      light_(device, point_count_), primary_(device, scene, width * height, point_count_ > width * height),
+      view_scale_(device, scene), direct_(device, scene, point_count_),
+      photons_(device, scene, PhotonKind::kGlobal, settings.photon_count,
+               photonCapacity(device, settings.photon_capacity)),
       caustic_photons_(device, scene, PhotonKind::kCaustic, settings.caustic_photons,
                        photonCapacity(device, uint64_t(settings.caustic_photons) * kCausticBounces)),
       photon_tree_(device, "photon_tree", photonCapacity(device, settings.photon_capacity)),
