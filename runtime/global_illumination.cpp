@@ -119,7 +119,6 @@ FrameTraits GlobalIllumination::traits() const
 {
     return {.has_specular = has_specular_,
             .has_mirrors = has_mirrors_,
-            .has_caustic_targets = has_caustic_targets_,
             .reflects_roughly = scene_.reflectsRoughly(),
             .has_noisy_direct = direct_.isNoisy(),
             .has_guide = guide_.has_value(),

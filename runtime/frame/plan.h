@@ -7,14 +7,13 @@
 /// Properties of the scene and of the allocated buffers that a plan depends on.
 struct FrameTraits
 {
-    bool has_specular = false;        // mirrors, glass, rough reflection
-    bool has_mirrors = false;         // delta events that are more than the sheen of a smooth layer
-    bool has_caustic_targets = false; // mirrors and glass to aim photons at
-    bool reflects_roughly = false;    // some reflection is so rough that spherical harmonics can replace rays
-    bool has_noisy_direct = false;    // lights with an area, or several of them: a ray samples a part
-    bool has_guide = false;           // photons are guided
-    bool gathers_at_pixels = false;   // there is room for gathering rays of every pixel
-    uint32_t pixel_rays = 1;          // of each, a frame
+    bool has_specular = false;      // mirrors, glass, rough reflection
+    bool has_mirrors = false;       // delta events that are more than the sheen of a smooth layer
+    bool reflects_roughly = false;  // some reflection is so rough that spherical harmonics can replace rays
+    bool has_noisy_direct = false;  // lights with an area, or several of them: a ray samples a part
+    bool has_guide = false;         // photons are guided
+    bool gathers_at_pixels = false; // there is room for gathering rays of every pixel
+    uint32_t pixel_rays = 1;        // of each, a frame
 };
 
 struct FramePlan
