@@ -1,5 +1,6 @@
 #include "compiler/build_bvh.h"
 
+#include "compiler/bvh_moving.h"
 #include "compiler/bvh_tree.h"
 #include "compiler/parallel.h"
 #include "format/check.h"
@@ -111,7 +112,7 @@ using EmbreeBvh = std::unique_ptr<std::remove_pointer_t<RTCBVH>, BvhRelease>;
 /// @param primitives [triangle_count] and more; what is left of it Embree fills with the parts that spatial splits make
 void fillPrimitives(const Source& source, RTCBuildPrimitive* primitives)
 {
-    const size_t count = source.mesh.triangles.size();
+    const size_t count = source.mesh.staticTriangleCount();
     constexpr size_t kBatch = 1 << 16;
     parallelFor((count + kBatch - 1) / kBatch,
                 [&](size_t batch)
@@ -128,7 +129,7 @@ void fillPrimitives(const Source& source, RTCBuildPrimitive* primitives)
 /// less than leaving it to Embree.
 BinaryNode* buildBinary(RTCBVH bvh, const Source& source)
 {
-    const size_t count = source.mesh.triangles.size();
+    const size_t count = source.mesh.staticTriangleCount();
     const size_t capacity = 2 * count;
     const auto primitives = std::make_unique_for_overwrite<RTCBuildPrimitive[]>(capacity);
     preferHugePages(primitives.get(), capacity * sizeof(RTCBuildPrimitive));
@@ -182,25 +183,38 @@ private:
     const Source& source_;
     std::vector<bool> seen_; // by triangle
 };
+Bvh buildStatic(const Source& source, uint32_t most_stack)
+{
+    const Device device(rtcNewDevice(fmt::format("threads={}", thread_limit).c_str()));
+    check(device, "Embree error {}", int(rtcGetDeviceError(nullptr)));
+    const EmbreeBvh memory(rtcNewBVH(device.get()));
+    BinaryNode* root = buildBinary(memory.get(), source);
+    check(root, "Embree error {}", int(rtcGetDeviceError(device.get())));
+    root = Unsplit(source).run(root);
+    return collapseToFit(*root, source.mesh, source.flags, most_stack);
+}
+
+/// Of a tree of objects, four children a node.
+uint32_t stackAbove(size_t object_count)
+{
+    uint32_t levels = 0;
+    for (size_t n = object_count; n > 1; n = (n + 3) / 4)
+        ++levels;
+    return levels * (gpu::kBvhWidth - 1);
+}
 } // namespace
 
 Bvh buildBvh(const WorldMesh& mesh, std::span<const uint32_t> triangle_flags)
 {
     check(!mesh.triangles.empty() && triangle_flags.size() == mesh.triangles.size(), "{} triangles, {} flags",
           mesh.triangles.size(), triangle_flags.size());
-    const Device device(rtcNewDevice(fmt::format("threads={}", thread_limit).c_str()));
-    check(device, "Embree error {}", int(rtcGetDeviceError(nullptr)));
-    const EmbreeBvh memory(rtcNewBVH(device.get()));
     const Source source = makeSource(mesh, triangle_flags);
-    BinaryNode* root = buildBinary(memory.get(), source);
-    check(root, "Embree error {}", int(rtcGetDeviceError(device.get())));
-    root = Unsplit(source).run(root);
-
-    Bvh bvh = collapse(*root, mesh, triangle_flags);
-    for (uint32_t depth = 56; bvh.traversal_stack > gpu::kTraversalStackSize; depth -= 4)
-    {
-        limitDepth(*root, depth);
-        bvh = collapse(*root, mesh, triangle_flags);
-    }
-    return bvh;
+    if (mesh.moving.empty())
+        return buildStatic(source, gpu::kTraversalStackSize);
+    const uint32_t most_stack = gpu::kTraversalStackSize - 1; // below the root
+    const uint32_t most_of_object = most_stack - stackAbove(mesh.moving.size());
+    std::vector<Bvh> objects(mesh.moving.size());
+    parallelFor(objects.size(), [&](size_t i)
+                { objects[i] = buildObjectBvh(mesh, triangle_flags, i, source.padding, most_of_object); });
+    return joinMoving(mesh.staticTriangleCount() == 0 ? Bvh{} : buildStatic(source, most_stack), objects);
 }

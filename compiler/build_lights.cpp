@@ -5,6 +5,7 @@
 #include "compiler/environment.h"
 #include "compiler/vector_math.h"
 #include "format/alias_table.h"
+#include "format/spot_cone.h"
 
 #include <algorithm>
 #include <numbers>
@@ -19,7 +20,9 @@ constexpr double kLeastShare = 1e-30;
 struct Candidate
 {
     gpu::Light light;
-    double power; // W, luminance
+    double power;                   // W, luminance
+    bool keep = false;              // where it has no power, too
+    uint32_t punctual = gpu::kNone; // its number in the scene
 };
 
 /// Radius of the sphere about the scene's box.
@@ -62,10 +65,8 @@ Candidate punctual(const PunctualLight& source, double scene_radius)
         c.power *= kPi * scene_radius * scene_radius;
     else
     {
-        const float cos_outer = std::cos(source.outer_cone);
-        const float scale = 1 / std::max(0.001f, std::cos(source.inner_cone) - cos_outer);
-        c.light.p2 = {scale, -cos_outer * scale, 0};
-        c.power *= spotSolidAngle(cos_outer, 1 / double(scale));
+        c.light.p2 = package::spotCone(source.inner_cone, source.outer_cone);
+        c.power *= spotSolidAngle(std::cos(source.outer_cone), 1 / double(c.light.p2.x));
     }
     return c;
 }
@@ -116,11 +117,18 @@ std::vector<Candidate> collect(const SceneData& scene)
     const double radius = sceneRadius(scene.mesh);
     std::vector<Candidate> candidates;
     for (const PunctualLight& light : scene.lights)
+    {
         candidates.push_back(punctual(light, radius));
+        candidates.back().keep = light.moves;
+        candidates.back().punctual = uint32_t(candidates.size() - 1);
+    }
     for (uint32_t i = 0; i < scene.mesh.triangles.size(); ++i)
     {
         if (emits(scene.materials[scene.mesh.materials[i]]))
+        {
             candidates.push_back(emissiveTriangle(scene, i));
+            candidates.back().keep = i >= scene.mesh.staticTriangleCount();
+        }
     }
     if (scene.environment)
     {
@@ -155,6 +163,8 @@ std::vector<double> sampleShares(const std::vector<Candidate>& candidates)
 {
     constexpr double kMostBeams = 0.5;
     const double total = totalPower(candidates);
+    if (total == 0) // all of them move, and are dark at rest
+        return std::vector<double>(candidates.size(), 1 / double(candidates.size()));
     double beams = 0, lamps = 0;
     for (const Candidate& c : candidates)
         (isBeam(c) ? beams : lamps) += c.power / total;
@@ -172,12 +182,21 @@ std::vector<double> sampleShares(const std::vector<Candidate>& candidates)
 LightTables buildLights(const SceneData& scene)
 {
     LightTables tables;
-    tables.caustic_targets = findCausticTargets(scene);
+    CausticTargets targets = findCausticTargets(scene);
+    tables.caustic_targets = std::move(targets.spheres);
+    tables.caustic_target_of = std::move(targets.of_object);
+    tables.of_punctual.assign(scene.lights.size(), gpu::kNone);
 
     std::vector<Candidate> candidates = collect(scene);
     const double least = totalPower(candidates) * kLeastShare;
-    std::erase_if(candidates, [&](const Candidate& c) { return !(c.power > least); });
+    std::erase_if(candidates, [&](const Candidate& c) { return !(c.power > least) && !c.keep; });
+    for (Candidate& c : candidates)
+        if (!(c.power > least))
+            c.power = 0;
     tables.total_power = float(totalPower(candidates));
+    for (uint32_t i = 0; i < candidates.size(); ++i)
+        if (candidates[i].punctual != gpu::kNone)
+            tables.of_punctual[candidates[i].punctual] = i;
     if (candidates.empty())
         return tables;
 

@@ -145,8 +145,11 @@ public:
     Bvh run(BinaryNode& root)
     {
         planTree(root);
-        reserveLarge(bvh_.nodes, mesh_.triangles.size() / 4 + 1);
-        reserveLarge(bvh_.triangles, mesh_.triangles.size() + mesh_.triangles.size() / 4);
+        if (mesh_.moving.empty())
+        {
+            reserveLarge(bvh_.nodes, mesh_.triangles.size() / 4 + 1);
+            reserveLarge(bvh_.triangles, mesh_.triangles.size() + mesh_.triangles.size() / 4);
+        }
         const double root_area = std::max(root.box.halfArea(), std::numeric_limits<double>::min());
         bvh_.nodes.emplace_back();
         Trees children;
@@ -272,4 +275,16 @@ private:
 Bvh collapse(BinaryNode& root, const WorldMesh& mesh, std::span<const uint32_t> triangle_flags)
 {
     return Collapse(mesh, triangle_flags).run(root);
+}
+
+Bvh collapseToFit(BinaryNode& root, const WorldMesh& mesh, std::span<const uint32_t> triangle_flags,
+                  uint32_t most_stack)
+{
+    Bvh bvh = collapse(root, mesh, triangle_flags);
+    for (uint32_t depth = most_stack - 8; bvh.traversal_stack > most_stack; depth -= 4)
+    {
+        limitDepth(root, depth);
+        bvh = collapse(root, mesh, triangle_flags);
+    }
+    return bvh;
 }

@@ -66,3 +66,7 @@ void limitDepth(BinaryNode& root, uint32_t depth);
 /// Turns the binary tree into 4-wide nodes so that the surface-area heuristic is least (Wald et al. 2008; the dynamic
 /// program of Ylitie et al. 2017, section 3.1), in depth-first order. Sets the boxes of inner nodes.
 Bvh collapse(BinaryNode& root, const WorldMesh& mesh, std::span<const uint32_t> triangle_flags);
+
+/// The same, of a tree that is made less deep until traversal needs no more than `most_stack` entries.
+Bvh collapseToFit(BinaryNode& root, const WorldMesh& mesh, std::span<const uint32_t> triangle_flags,
+                  uint32_t most_stack);

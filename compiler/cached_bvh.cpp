@@ -50,6 +50,7 @@ Bvh cachedBvh(const Cache& cache, const WorldMesh& mesh, std::span<const uint32_
                                 .array(mesh.positions)
                                 .array(mesh.triangles)
                                 .array(mesh.materials)
+                                .array(mesh.moving)
                                 .bytes(std::as_bytes(triangle_flags))
                                 .finish();
     if (const auto found = cache.find(key))

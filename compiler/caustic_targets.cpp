@@ -57,7 +57,7 @@ void reduce(std::span<gpu::CausticTarget> targets, size_t budget, std::vector<gp
 }
 } // namespace
 
-std::vector<gpu::CausticTarget> findCausticTargets(const SceneData& scene)
+CausticTargets findCausticTargets(const SceneData& scene)
 {
     const WorldMesh& mesh = scene.mesh;
     const auto forEachCorner = [&](const auto& visit)
@@ -78,8 +78,22 @@ std::vector<gpu::CausticTarget> findCausticTargets(const SceneData& scene)
     forEachCorner([&](uint32_t object, const gpu::vec3& p)
                   { spheres[object].radius = std::max(spheres[object].radius, length(p - spheres[object].center)); });
 
-    std::erase_if(spheres, [](const gpu::CausticTarget& t) { return !(t.radius > 0); });
-    std::vector<gpu::CausticTarget> targets;
-    reduce(spheres, kMaxCausticTargets, targets);
+    const uint32_t first_moving = mesh.moving.empty() ? mesh.object_count : mesh.objects[mesh.moving.front()];
+    CausticTargets targets{.spheres = {}, .of_object = std::vector<int>(mesh.object_count, -1)};
+    std::vector<gpu::CausticTarget> fixed, moving;
+    for (uint32_t object = 0; object < mesh.object_count; ++object)
+        if (spheres[object].radius > 0)
+            (object < first_moving ? fixed : moving).push_back(spheres[object]);
+    if (moving.size() > kMaxMovingTargets)
+    {
+        fixed.insert(fixed.end(), moving.begin(), moving.end());
+        moving.clear();
+    }
+    reduce(fixed, kMaxCausticTargets - moving.size(), targets.spheres);
+    auto next = int(targets.spheres.size());
+    targets.spheres.insert(targets.spheres.end(), moving.begin(), moving.end());
+    for (uint32_t object = first_moving; object < mesh.object_count && !moving.empty(); ++object)
+        if (spheres[object].radius > 0)
+            targets.of_object[object] = next++;
     return targets;
 }

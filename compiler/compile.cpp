@@ -56,6 +56,9 @@ Status placeScene(const CompileOptions& options, ImportedScene& imported)
 {
     std::vector<CameraView>& cameras = imported.scene.cameras;
     cameras.insert(cameras.begin(), options.views.begin(), options.views.end());
+    if (imported.scene.motion)
+        for (const auto& camera : imported.scene.motion->tables.cameras)
+            camera->camera += uint32_t(options.views.size());
     return moveIntoFrame(imported, chooseFrame(imported));
 }
 
@@ -142,6 +145,7 @@ writePackage(const CompileOptions& options, const SceneData& scene, const Bvh& b
              const TexturePages& textures, const EnvironmentImportance* importance, const lumicut::fb::MetaT& meta)
 {
     const std::vector<uint8_t> meta_bytes = encodeMeta(meta);
+    std::vector<uint8_t> motion_bytes;
     const package::StoredGeometry geometry = foldGeometry(scene.mesh, bvh);
     std::vector<package::ChunkSource> chunks = geometry.chunks();
     addChunk(chunks, package::kMetaChunk, meta_bytes);
@@ -152,6 +156,17 @@ writePackage(const CompileOptions& options, const SceneData& scene, const Bvh& b
     addChunk(chunks, package::kLightsChunk, lights.lights);
     addChunk(chunks, package::kLightAliasesChunk, lights.aliases);
     addChunk(chunks, package::kCausticTargetsChunk, lights.caustic_targets);
+    if (const MotionData* const motion = scene.motion.get())
+    {
+        Result<std::vector<uint8_t>> encoded = encodeMotion(scene, lights);
+        if (!encoded)
+            return encoded.error();
+        motion_bytes = std::move(*encoded);
+        addChunk(chunks, package::kMotionChunk, motion_bytes);
+        addChunk(chunks, package::kMovingVerticesChunk, motion->vertices);
+        addChunk(chunks, package::kInfluencesChunk, motion->influences);
+        addChunk(chunks, package::kMorphOffsetsChunk, motion->morph_offsets);
+    }
     if (importance != nullptr)
     {
         addChunk(chunks, package::kEnvironmentChunk, scene.environment->texels);

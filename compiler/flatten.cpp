@@ -2,6 +2,7 @@
 
 #include "compiler/encode.h"
 #include "compiler/gltf_material.h"
+#include "compiler/moving_vertex.h"
 #include "compiler/tangents.h"
 #include "format/check.h"
 #include "format/large_memory.h"
@@ -128,6 +129,22 @@ public:
         reserveLarge(mesh_.attributes, triangle_total);
     }
 
+    /// Adds a primitive that moves, under `place`; what moves its vertices goes to `motion`.
+    /// @return false where nothing was added: vertices are beyond the range of numbers
+    bool addMoving(const MeshPrimitive& primitive, const Transform& to_world, uint32_t object, const MovingPlace& place,
+                   MotionData& motion)
+    {
+        transformVertices(primitive, to_world);
+        if (!std::all_of(world_.begin(), world_.end(), [](gpu::vec3 p) { return isFinite(p); }))
+            return false;
+        for (std::vector<uint32_t>& slots : slots_)
+            slots.assign(primitive.positions.size(), kUnset);
+        const bool mirrored = to_world.determinant() < 0;
+        for (const gpu::uvec3& t : primitive.triangles)
+            addMovingTriangle(primitive, mirrored, object, mirrored ? gpu::uvec3{t.x, t.z, t.y} : t, place, motion);
+        return true;
+    }
+
     /// @return false where nothing was added: vertices are beyond the range of numbers
     bool add(const MeshPrimitive& primitive, const Transform& to_world, uint32_t object)
     {
@@ -152,6 +169,15 @@ public:
             addTriangle(primitive, mirrored, object, wound(i), hash(wound(i)));
         }
         return true;
+    }
+
+    size_t triangleCount() const { return mesh_.triangles.size(); }
+    /// From the next triangle on there is another object that moves.
+    void beginMoving() { mesh_.moving.push_back(uint32_t(mesh_.triangles.size())); }
+    void dropEmpty()
+    {
+        if (mesh_.moving.back() == mesh_.triangles.size())
+            mesh_.moving.pop_back();
     }
 
     WorldMesh take() { return std::move(mesh_); }
@@ -198,8 +224,7 @@ private:
             ++counts_.degenerate_triangles;
             return;
         }
-        const Vec3d corner = toDouble(world_[t.x]);
-        const Vec3d facing = unitOrZero(cross(toDouble(world_[t.y]) - corner, toDouble(world_[t.z]) - corner));
+        const Vec3d facing = facingOf(t);
         const bool flipped = opposesWinding(t, facing);
         std::vector<uint32_t>& slots = slots_[flipped];
         const size_t vertices_before = mesh_.positions.size();
@@ -234,6 +259,49 @@ private:
                 slots[v] = kUnset;
     }
 
+    Vec3d facingOf(gpu::uvec3 t) const
+    {
+        const Vec3d corner = toDouble(world_[t.x]);
+        return unitOrZero(cross(toDouble(world_[t.y]) - corner, toDouble(world_[t.z]) - corner));
+    }
+
+    void addMovingTriangle(const MeshPrimitive& primitive, bool mirrored, uint32_t object, gpu::uvec3 t,
+                           const MovingPlace& place, MotionData& motion)
+    {
+        if (t.x == t.y || t.y == t.z || t.z == t.x) // never has an area
+        {
+            ++counts_.degenerate_triangles;
+            return;
+        }
+        const Vec3d facing = facingOf(t);
+        const bool flipped = opposesWinding(t, facing);
+        const auto vertex = [&](uint32_t v)
+        {
+            uint32_t& slot = slots_[flipped][v];
+            if (slot == kUnset)
+            {
+                slot = uint32_t(mesh_.positions.size());
+                mesh_.positions.push_back(world_[v]);
+                mesh_.attributes.push_back(attributes(primitive, mirrored, v, t, facing, flipped));
+                const bool turned = primitive.moving->mirrored.empty() ? mirrored : primitive.moving->mirrored[v];
+                const bool negative =
+                    !primitive.tangents.empty() && negativeBitangent(primitive, mirrored, v, t, flipped) != turned;
+                appendMovingVertex({.moving = *primitive.moving,
+                                    .vertex = v,
+                                    .triangle = t,
+                                    .flipped = flipped,
+                                    .mirrored = turned,
+                                    .negative_bitangent = negative},
+                                   place, motion);
+            }
+            return slot;
+        };
+        mesh_.triangles.push_back({vertex(t.x), vertex(t.y), vertex(t.z)});
+        mesh_.materials.push_back(primitive.material);
+        mesh_.objects.push_back(object);
+        flipped_triangles_ += flipped;
+    }
+
     float finite(float v)
     {
         if (std::isfinite(v))
@@ -261,7 +329,7 @@ private:
         Vec3d normal = flipped ? normals_[v] * -1 : normals_[v];
         if (normal == Vec3d{})
         {
-            normal = facing;
+            normal = facing == Vec3d{} ? Vec3d{0, 1, 0} : facing; // of no area: one that moves
             ++repaired_normals_;
         }
         gpu::VertexAttributes out{};
@@ -295,9 +363,19 @@ private:
     uint64_t repaired_normals_ = 0;
     uint64_t repaired_values_ = 0;
 };
+void addObject(const MovingPlace& place, size_t first_triangle, size_t triangles_end, MotionData& motion)
+{
+    if (first_triangle == triangles_end)
+        return;
+    auto object = std::make_unique<lumicut::fb::MovingObjectT>();
+    object->node = place.node;
+    object->first_triangle = uint32_t(first_triangle);
+    object->triangle_count = uint32_t(triangles_end - first_triangle);
+    motion.tables.objects.push_back(std::move(object));
+}
 } // namespace
 
-Result<WorldMesh> flatten(const ImportedScene& imported, ImportCounts& counts, Warnings& warnings)
+Result<WorldMesh> flatten(ImportedScene& imported, ImportCounts& counts, Warnings& warnings)
 {
     const size_t total = triangleTotal(imported);
     if (total > kMaxTriangles)
@@ -309,8 +387,21 @@ Result<WorldMesh> flatten(const ImportedScene& imported, ImportCounts& counts, W
     size_t beyond = 0;
     for (const ImportedInstance& instance : imported.instances)
     {
+        if (instance.moving)
+            flattener.beginMoving();
+        const size_t first_triangle = flattener.triangleCount();
         for (size_t p = 0; p < instance.primitive_count; ++p)
-            beyond += !flattener.add(imported.primitives[instance.first_primitive + p], instance.to_world, object);
+        {
+            const MeshPrimitive& primitive = imported.primitives[instance.first_primitive + p];
+            beyond += !(instance.moving ? flattener.addMoving(primitive, instance.to_world, object, *instance.moving,
+                                                              *imported.scene.motion)
+                                        : flattener.add(primitive, instance.to_world, object));
+        }
+        if (instance.moving)
+        {
+            flattener.dropEmpty();
+            addObject(*instance.moving, first_triangle, flattener.triangleCount(), *imported.scene.motion);
+        }
         ++object;
     }
     if (beyond > 0)

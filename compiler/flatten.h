@@ -5,10 +5,11 @@
 /// Removes degenerate triangles (two corners in one place, no area) and repeats of a triangle (same corners, winding
 /// and material), counts them, repairs normals without a direction, flips those of triangles whose three normals are
 /// all behind their winding (vertices that are shared with other triangles are split), and drops vertices that nothing
-/// uses. Objects that will move one day do not come here: they keep their own mesh.
+/// uses. Objects that move come last, as at rest, and keep every triangle that has three corners; what moves their vertices
+/// goes to imported.scene.motion. One that is hidden at rest has all its vertices in one place.
 /// Primitives that a transform moves beyond the range of floats are left out with a warning.
 /// @return kInvalid where nothing is left
-Result<WorldMesh> flatten(const ImportedScene& imported, ImportCounts& counts, Warnings& warnings);
+Result<WorldMesh> flatten(ImportedScene& imported, ImportCounts& counts, Warnings& warnings);
 
 struct Bounds
 {

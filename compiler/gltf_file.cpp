@@ -61,6 +61,56 @@ std::vector<GltfSkin> takeSkins(json& document)
     return skins;
 }
 
+GltfChannel readChannel(const json& channel, const json& samplers)
+{
+    const auto member = [](const json& from, const char* key) -> json
+    { return from.is_object() && from.contains(key) ? from[key] : json(); };
+    const auto integer = [&](const json& from, const char* key)
+    {
+        const json value = member(from, key);
+        return value.is_number_unsigned() ? int(std::min<uint64_t>(value.get<uint64_t>(), INT32_MAX)) : -1;
+    };
+    const auto text = [&](const json& from, const char* key, const char* fallback)
+    {
+        const json value = member(from, key);
+        return value.is_string() ? value.get<std::string>() : std::string(fallback);
+    };
+    const json target = member(channel, "target");
+    GltfChannel result;
+    result.path = text(target, "path", "");
+    result.node = integer(target, "node");
+    result.pointer = text(member(member(target, "extensions"), "KHR_animation_pointer"), "pointer", "");
+    const int sampler = integer(channel, "sampler");
+    if (!samplers.is_array() || sampler < 0 || size_t(sampler) >= samplers.size())
+        return result;
+    const json& keys = samplers[size_t(sampler)];
+    result.interpolation = text(keys, "interpolation", "LINEAR");
+    result.times = integer(keys, "input");
+    result.values = integer(keys, "output");
+    return result;
+}
+
+/// tinygltf does without what we read ourselves.
+std::vector<GltfAnimation> takeAnimations(json& document)
+{
+    std::vector<GltfAnimation> animations;
+    const auto list = document.find("animations");
+    if (list == document.end())
+        return animations;
+    for (const json& from : *list)
+    {
+        GltfAnimation& animation = animations.emplace_back();
+        if (const auto name = from.find("name"); name != from.end() && name->is_string())
+            animation.name = name->get<std::string>();
+        const json samplers = from.contains("samplers") ? from["samplers"] : json();
+        if (const auto channels = from.find("channels"); channels != from.end() && channels->is_array())
+            for (const json& channel : *channels)
+                animation.channels.push_back(readChannel(channel, samplers));
+    }
+    document.erase("animations");
+    return animations;
+}
+
 /// tinygltf refuses index accessors without a buffer view, which Draco files and sparse ones over zeros have: lends
 /// them the first one. @return the accessors that got it
 std::vector<size_t> lendIndexViews(json& document)
@@ -151,11 +201,7 @@ Result<GltfFile> readGltf(const std::filesystem::path& path)
     repairGltf(document, file.warnings);
     if (const Status status = checkExtensions(document, file.warnings); !status)
         return status.error();
-    if (document.contains("animations"))
-        file.warnings.push_back({WarningKind::kLeftOut, "",
-                                 "animations are not played: the scene is compiled in the pose that it shows at rest",
-                                 ""});
-    document.erase("animations");
+    file.animations = takeAnimations(document);
     file.skins = takeSkins(document);
 
     Result<std::vector<Bytes>> buffers = loadBuffers(*parsed, *file.files, file.warnings);

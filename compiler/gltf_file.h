@@ -32,13 +32,31 @@ struct GltfSkin
     std::optional<int> inverse_bind_matrices; // accessor, unchecked; none: identities
 };
 
+/// One channel of an animation with its sampler, as in the file: indices unchecked, -1 where they are missing.
+struct GltfChannel
+{
+    std::string path;    // "translation", ..., or "pointer" of KHR_animation_pointer
+    int node = -1;       // that `path` is of
+    std::string pointer; // what KHR_animation_pointer sets
+    std::string interpolation = "LINEAR";
+    int times = -1; // accessors
+    int values = -1;
+};
+
+struct GltfAnimation
+{
+    std::string name;
+    std::vector<GltfChannel> channels; // as in the file
+};
+
 struct GltfFile
 {
-    std::shared_ptr<InputFiles> files; // relative URIs start in its folder; records all that were read
-    tinygltf::Model model;             // buffers loaded; indices between its parts as after repairGltf(); no images
-                                       // and skins
-    std::vector<GltfImage> images;     // as in the file
-    std::vector<GltfSkin> skins;       // as in the file
+    std::shared_ptr<InputFiles> files;     // relative URIs start in its folder; records all that were read
+    tinygltf::Model model;                 // buffers loaded; indices between its parts as after repairGltf(); no images
+                                           // skins and animations
+    std::vector<GltfImage> images;         // as in the file
+    std::vector<GltfSkin> skins;           // as in the file
+    std::vector<GltfAnimation> animations; // as in the file
     Warnings warnings;
 };
 

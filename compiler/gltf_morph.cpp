@@ -68,3 +68,32 @@ Status applyMorphTargets(const tinygltf::Model& model, const tinygltf::Primitive
         return Error{ExitCode::kInvalid, "its morph targets move vertices beyond the range of numbers"};
     return Success{};
 }
+
+Result<std::vector<MorphTarget>> readMorphTargets(const tinygltf::Model& model, const tinygltf::Primitive& primitive,
+                                                  size_t count, const MeshPrimitive& mesh)
+{
+    std::vector<MorphTarget> targets(count);
+    const auto read = [&](size_t t, const char* name, bool has_base, std::vector<gpu::vec3>& out) -> Status
+    {
+        if (!has_base || t >= primitive.targets.size() || !primitive.targets[t].contains(name))
+            return Success{};
+        const Result<FloatArray> moves = readFloats(model, primitive.targets[t].at(name), 3, 3);
+        if (!moves)
+            return Error{moves.error().code, fmt::format("morph target {}: {}", t, moves.error().message)};
+        if (moves->count != mesh.positions.size())
+            return Error{ExitCode::kInvalid, fmt::format("{} of morph target {} has {} elements for {} vertices", name,
+                                                         t, moves->count, mesh.positions.size())};
+        for (size_t v = 0; v < moves->count; ++v)
+            out.push_back({moves->values[3 * v], moves->values[3 * v + 1], moves->values[3 * v + 2]});
+        if (!std::all_of(out.begin(), out.end(), [](gpu::vec3 p) { return isFinite(p); }))
+            return Error{ExitCode::kInvalid, fmt::format("{} of morph target {} is not finite", name, t)};
+        return Success{};
+    };
+    for (size_t t = 0; t < count; ++t)
+        for (const Status& status : {read(t, "POSITION", true, targets[t].positions),
+                                     read(t, "NORMAL", !mesh.normals.empty(), targets[t].normals),
+                                     read(t, "TANGENT", !mesh.tangents.empty(), targets[t].tangents)})
+            if (!status)
+                return status.error();
+    return targets;
+}

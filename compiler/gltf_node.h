@@ -7,10 +7,6 @@
 #include <span>
 #include <vector>
 
-Transform fromTranslationRotationScale(const std::array<double, 3>& translation,
-                                       const std::array<double, 4>& rotation, // quaternion, normalised here
-                                       const std::array<double, 3>& scale);
-
 bool isFiniteTransform(const Transform& transform);
 
 /// A column-major 4 x 4 matrix whose last row is (0 0 0 w) but for rounding; nothing where it is projective.

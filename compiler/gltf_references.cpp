@@ -43,8 +43,8 @@ void References::repairLists()
     for (const char* key : {"extensions", "extras"})
         if (const auto it = document_.find(key); it != document_.end() && !it->is_object())
             document_.erase(it);
-    for (const char* name : {"accessors", "bufferViews", "buffers", "cameras", "images", "materials", "meshes", "nodes",
-                             "samplers", "scenes", "skins", "textures", kLightList})
+    for (const char* name : {"accessors", "animations", "bufferViews", "buffers", "cameras", "images", "materials",
+                             "meshes", "nodes", "samplers", "scenes", "skins", "textures", kLightList})
     {
         json* items = list(name);
         if (items == nullptr)

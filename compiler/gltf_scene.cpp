@@ -103,12 +103,12 @@ std::vector<double> morphWeights(const tinygltf::Mesh& mesh, const tinygltf::Nod
 class Walk
 {
 public:
-    explicit Walk(const tinygltf::Model& model) : model_(model) {}
+    Walk(const tinygltf::Model& model, const std::vector<bool>& may_show) : model_(model), may_show_(may_show) {}
 
     SceneNodes run(const std::vector<int>& roots)
     {
         std::vector<Pending> stack;
-        push(roots, Transform{}, stack);
+        push(roots, Transform{}, false, stack);
         while (!stack.empty())
         {
             const Pending next = stack.back();
@@ -123,12 +123,14 @@ private:
     {
         size_t node;
         Transform parent;
+        bool hidden;
     };
 
-    static void push(const std::vector<int>& children, const Transform& parent, std::vector<Pending>& stack)
+    static void push(const std::vector<int>& children, const Transform& parent, bool hidden,
+                     std::vector<Pending>& stack)
     {
         for (auto child = children.rbegin(); child != children.rend(); ++child)
-            stack.push_back({size_t(*child), parent});
+            stack.push_back({size_t(*child), parent, hidden});
     }
 
     /// Says what is wrong with a node.
@@ -142,26 +144,28 @@ private:
     {
         const tinygltf::Node& node = model_.nodes[pending.node];
         const auto visibility = node.extensions.find("KHR_node_visibility");
-        if (visibility != node.extensions.end() && visibility->second.Get("visible").IsBool() &&
-            !visibility->second.Get("visible").Get<bool>())
-            return; // hides the whole subtree
+        const bool hides = visibility != node.extensions.end() && visibility->second.Get("visible").IsBool() &&
+                           !visibility->second.Get("visible").Get<bool>(); // the whole subtree
+        if (hides && (may_show_.empty() || !may_show_[pending.node]))
+            return;
+        const bool hidden = pending.hidden || hides;
         const Result<Transform> local = localTransform(node, pending.node);
         if (!local || !isFiniteTransform(pending.parent * *local))
             return leaveOut(local ? invalid("a node's place is beyond the range of numbers") : local.error(),
                             pending.node, "the node and its children are left out");
         const Transform to_world = pending.parent * *local;
-        addMesh(node, pending.node, to_world);
+        addMesh(node, pending.node, to_world, hidden);
         if (isFinite(toFloat(to_world.point({}))))
         {
-            addCamera(node, to_world);
-            addLight(node, to_world);
+            addCamera(node, pending.node, to_world);
+            addLight(node, pending.node, to_world, hidden);
         }
         else if (node.camera != -1 || node.extensions.contains("KHR_lights_punctual"))
             leaveOut(invalid("a camera or a light is beyond the range of numbers"), pending.node, "it is left out");
-        push(node.children, to_world, stack);
+        push(node.children, to_world, hidden, stack);
     }
 
-    void addMesh(const tinygltf::Node& node, size_t index, const Transform& to_world)
+    void addMesh(const tinygltf::Node& node, size_t index, const Transform& to_world, bool hidden)
     {
         if (node.mesh == -1)
             return;
@@ -171,27 +175,34 @@ private:
         std::vector<double> weights = morphWeights(model_.meshes[size_t(node.mesh)], node);
         if (node.skin != -1) // its joints place it, wherever its node or instances of it are
         {
-            nodes_.meshes.push_back({node.mesh, to_world, node.skin, std::move(weights)});
+            nodes_.meshes.push_back({node.mesh, to_world, node.skin, std::move(weights), index, {}, hidden});
             return;
         }
         for (const Transform& instance : *instances)
-            nodes_.meshes.push_back({node.mesh, to_world * instance, -1, weights});
+            nodes_.meshes.push_back({node.mesh, to_world * instance, -1, weights, index, instance, hidden});
     }
 
-    void addCamera(const tinygltf::Node& node, const Transform& to_world)
+    void addCamera(const tinygltf::Node& node, size_t index, const Transform& to_world)
     {
-        if (node.camera != -1)
-            nodes_.cameras.push_back(makeCamera(model_.cameras[size_t(node.camera)], node, to_world, node.camera));
+        if (node.camera == -1)
+            return;
+        nodes_.cameras.push_back(makeCamera(model_.cameras[size_t(node.camera)], node, to_world, node.camera));
+        nodes_.camera_nodes.push_back(index);
     }
 
-    void addLight(const tinygltf::Node& node, const Transform& to_world)
+    void addLight(const tinygltf::Node& node, size_t index, const Transform& to_world, bool hidden)
     {
-        if (const auto extension = node.extensions.find("KHR_lights_punctual"); extension != node.extensions.end())
-            nodes_.lights.push_back(
-                makeLight(model_.lights[size_t(extension->second.Get("light").GetNumberAsInt())], to_world));
+        const int light = lightOf(node);
+        if (light == -1)
+            return;
+        nodes_.lights.push_back(makeLight(model_.lights[size_t(light)], to_world));
+        nodes_.light_nodes.push_back(index);
+        if (hidden)
+            nodes_.lights.back().intensity = {};
     }
 
     const tinygltf::Model& model_;
+    const std::vector<bool>& may_show_;
     SceneNodes nodes_;
 };
 
@@ -229,7 +240,13 @@ std::vector<int> rootNodes(const tinygltf::Model& model)
 }
 } // namespace
 
-Result<SceneNodes> walkScene(const tinygltf::Model& model, const std::string& wanted)
+int lightOf(const tinygltf::Node& node)
+{
+    const auto extension = node.extensions.find("KHR_lights_punctual");
+    return extension == node.extensions.end() ? -1 : extension->second.Get("light").GetNumberAsInt();
+}
+
+Result<SceneNodes> walkScene(const tinygltf::Model& model, const std::string& wanted, const std::vector<bool>& may_show)
 {
     if (model.scenes.empty())
     {
@@ -238,14 +255,14 @@ Result<SceneNodes> walkScene(const tinygltf::Model& model, const std::string& wa
             return Error{ExitCode::kInvalid, "it has no scene and no node, so there is nothing to compile (/scenes)"};
         if (!wanted.empty())
             return Error{ExitCode::kUsage, fmt::format("there is no scene \"{}\"; the file has none", wanted)};
-        SceneNodes nodes = Walk(model).run(roots);
+        SceneNodes nodes = Walk(model, may_show).run(roots);
         nodes.warnings.push_back("the file has no scene; all its nodes are compiled");
         return nodes;
     }
     const Result<size_t> scene = chooseScene(model, wanted);
     if (!scene)
         return scene.error();
-    SceneNodes nodes = Walk(model).run(model.scenes[*scene].nodes);
+    SceneNodes nodes = Walk(model, may_show).run(model.scenes[*scene].nodes);
     if (wanted.empty() && model.defaultScene == -1 && model.scenes.size() > 1)
         nodes.warnings.push_back(fmt::format(
             "the file names no default scene; the first of {} is compiled (--scene chooses)", model.scenes.size()));

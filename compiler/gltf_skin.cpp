@@ -115,6 +115,8 @@ Result<SkinPose> poseSkin(const GltfFile& file, int skin, NodeTransforms& nodes)
             return invalid(joint.error().message);
         if (j == 0)
             pose.origin = joint->point({});
+        pose.nodes.push_back(size_t(from.joints[j]));
+        pose.binds.emplace_back();
         if (matrices.count > 0)
         {
             std::array<double, 16> m;
@@ -122,6 +124,7 @@ Result<SkinPose> poseSkin(const GltfFile& file, int skin, NodeTransforms& nodes)
             const std::optional<Transform> inverse_bind = affineTransform(m);
             if (!inverse_bind)
                 return invalid(fmt::format("inverse bind matrix {} is not an affine 4 x 4 matrix", j));
+            pose.binds.back() = *inverse_bind;
             joint = *joint * *inverse_bind;
         }
         if (!isFiniteTransform(*joint))
@@ -131,7 +134,8 @@ Result<SkinPose> poseSkin(const GltfFile& file, int skin, NodeTransforms& nodes)
     return pose;
 }
 
-Status skinMesh(const SkinPose& pose, const Influences& influences, const Transform& node_to_world, MeshPrimitive& mesh)
+Result<std::vector<bool>> skinMesh(const SkinPose& pose, const Influences& influences, const Transform& node_to_world,
+                                   MeshPrimitive& mesh)
 {
     std::vector<bool> mirrored(mesh.positions.size());
     for (size_t v = 0; v < mesh.positions.size(); ++v)
@@ -152,5 +156,5 @@ Status skinMesh(const SkinPose& pose, const Influences& influences, const Transf
     for (gpu::uvec3& t : mesh.triangles)
         if (int(mirrored[t.x]) + int(mirrored[t.y]) + int(mirrored[t.z]) >= 2)
             std::swap(t.y, t.z);
-    return Success{};
+    return mirrored;
 }

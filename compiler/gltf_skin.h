@@ -7,15 +7,6 @@
 #include <cstdint>
 #include <vector>
 
-/// The joints of each vertex with their weights, which sum to 1.
-struct Influences
-{
-    uint32_t per_vertex = 0;          // 0: no joints move the primitive
-    std::vector<uint32_t> joints;     // [per_vertex * vertex_count] below the skin's number of joints
-    std::vector<float> weights;       // [per_vertex * vertex_count] 0 or more
-    uint64_t weightless_vertices = 0; // had no weights and follow the first joint that they name
-};
-
 /// Reads every set JOINTS_n, WEIGHTS_n. @return kInvalid where one is damaged or names a joint that is not there
 Result<Influences> readInfluences(const AttributeSource& source, size_t vertex_count, size_t joint_count);
 
@@ -24,6 +15,8 @@ struct SkinPose
 {
     std::vector<Transform> joints; // [joint] from the mesh's space to the world: the node's transform times the inverse
                                    // bind matrix (glTF 2.0, 3.7.3.3)
+    std::vector<Transform> binds;  // [joint] inverse bind matrices
+    std::vector<size_t> nodes;     // [joint]
     Vec3d origin{};                // the first joint's place in the world
 };
 
@@ -32,6 +25,6 @@ Result<SkinPose> poseSkin(const GltfFile& file, int skin, NodeTransforms& nodes)
 
 /// Moves a primitive to where its joints place it, relative to `pose.origin`; one without influences to where
 /// `node_to_world` does. Where that mirrors it, winding and bitangents are mirrored with it.
-/// @return kInvalid where positions become infinite
-Status skinMesh(const SkinPose& pose, const Influences& influences, const Transform& node_to_world,
-                MeshPrimitive& mesh);
+/// @return of each vertex whether it is mirrored; kInvalid where positions become infinite
+Result<std::vector<bool>> skinMesh(const SkinPose& pose, const Influences& influences, const Transform& node_to_world,
+                                   MeshPrimitive& mesh);

@@ -2,14 +2,17 @@
 
 #include "compiler/gltf_material.h"
 #include "compiler/gltf_mesh.h"
+#include "compiler/gltf_morph.h"
 #include "compiler/gltf_variants.h"
 #include "compiler/parallel.h"
 #include "compiler/tangents.h"
+#include "format/motion.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <map>
+#include <numeric>
 #include <optional>
 #include <set>
 #include <tuple>
@@ -24,6 +27,8 @@ struct Shape
     int mesh = 0;
     std::vector<double> morph_weights;
     const MeshInstance* skinned = nullptr; // the one instance that shows it, if joints place it
+    bool moves = false;                    // its vertices are kept in their own space, too
+    bool morphs = false;                   // with their morph targets
     size_t first_primitive = 0;            // into ImportedScene::primitives, once they are there
     size_t primitive_count = 0;
 };
@@ -35,28 +40,49 @@ struct Job
     const tinygltf::Primitive* source;
     size_t number; // of the primitive in its mesh
     std::optional<MeshPrimitive> result;
+    GltfPrimitive base; // of a shape that moves: before morphing and skinning, but for triangles
+    std::vector<MorphTarget> targets;
     Warnings warnings;
+    Warnings late_warnings; // of completeMotion()
     uint64_t generated_normals = 0;
     uint64_t generated_tangents = 0;
     uint64_t weightless_vertices = 0;
     bool lacks_joints = false; // though its node has a skin
 };
 
-/// The shapes that `instances` show, by mesh, and which of them each instance shows.
-std::vector<Shape> shapesInUse(const std::vector<MeshInstance>& instances, std::vector<size_t>& shape_of_instance)
+/// Whether animations move an instance: its node, its joints or its morph weights.
+bool moves(const GltfFile& file, const MovingNodes& moving, const MeshInstance& instance)
 {
-    using Key = std::tuple<int, std::vector<double>, size_t>; // mesh, weights, 1 + index of a skinned instance
+    if (moving.places[instance.node] ||
+        (moving.morphs[instance.node] && morphWeightCount(file.model, file.model.nodes[instance.node]) > 0))
+        return true;
+    if (instance.skin < 0 || size_t(instance.skin) >= file.skins.size())
+        return false;
+    const std::vector<int>& joints = file.skins[size_t(instance.skin)].joints;
+    return std::any_of(joints.begin(), joints.end(),
+                       [&](int joint)
+                       { return joint >= 0 && size_t(joint) < moving.places.size() && moving.places[size_t(joint)]; });
+}
+
+/// The shapes that `instances` show, by mesh, and which of them each instance shows.
+std::vector<Shape> shapesInUse(const GltfFile& file, const MovingNodes& moving,
+                               const std::vector<MeshInstance>& instances, std::vector<size_t>& shape_of_instance)
+{
+    // mesh, weights, 1 + index of a skinned instance, moves, morphs
+    using Key = std::tuple<int, std::vector<double>, size_t, bool, bool>;
     std::map<Key, std::vector<size_t>> instances_of;
     for (size_t i = 0; i < instances.size(); ++i)
-        instances_of[{instances[i].mesh, instances[i].morph_weights, instances[i].skin == -1 ? 0 : i + 1}].push_back(i);
+        instances_of[{instances[i].mesh, instances[i].morph_weights, instances[i].skin == -1 ? 0 : i + 1,
+                      moves(file, moving, instances[i]), moving.morphs[instances[i].node]}]
+            .push_back(i);
     std::vector<Shape> shapes;
     shape_of_instance.resize(instances.size());
     for (const auto& [key, members] : instances_of)
     {
-        const auto& [mesh, weights, skinned] = key;
+        const auto& [mesh, weights, skinned, shape_moves, morphs] = key;
         for (const size_t i : members)
             shape_of_instance[i] = shapes.size();
-        shapes.push_back({mesh, weights, skinned == 0 ? nullptr : &instances[skinned - 1]});
+        shapes.push_back({mesh, weights, skinned == 0 ? nullptr : &instances[skinned - 1], shape_moves, morphs});
     }
     return shapes;
 }
@@ -93,7 +119,8 @@ Status checkVertexTotal(const tinygltf::Model& model, const std::vector<Job>& jo
 }
 
 /// Reads the materials that `jobs` name and sets the jobs' material indices.
-void readMaterials(const GltfFile& file, int variant, std::vector<Job>& jobs, ImportedScene& imported)
+/// @return [material of the file] its number in the scene, -1: it is not used
+std::vector<int> readMaterials(const GltfFile& file, int variant, std::vector<Job>& jobs, ImportedScene& imported)
 {
     std::set<int> in_use;
     const auto material = [&](const Job& job) { return std::max(materialOf(*job.source, variant), -1); };
@@ -105,6 +132,11 @@ void readMaterials(const GltfFile& file, int variant, std::vector<Job>& jobs, Im
     for (Job& job : jobs)
         if (job.result)
             job.result->material = uint32_t(std::lower_bound(used.begin(), used.end(), material(job)) - used.begin());
+    std::vector<int> numbers(file.model.materials.size(), -1);
+    for (size_t i = 0; i < used.size(); ++i)
+        if (used[i] >= 0)
+            numbers[size_t(used[i])] = int(i);
+    return numbers;
 }
 
 /// The poses of the skins that `shapes` need, by number; without those that are damaged.
@@ -137,6 +169,31 @@ const SkinPose* poseOf(const std::map<int, SkinPose>& poses, const Shape& shape)
     return pose == poses.end() ? nullptr : &pose->second;
 }
 
+/// Takes a primitive that moves, and morphs it to the weights at rest.
+void keepBase(const tinygltf::Model& model, GltfPrimitive primitive, const std::string& pointer, Job& job)
+{
+    MeshPrimitive mesh = primitive.mesh;
+    if (const Shape& shape = *job.shape; shape.morphs)
+    {
+        auto targets = readMorphTargets(model, *job.source, job.source->targets.size(), mesh);
+        const Status morphed =
+            targets ? applyMorphTargets(model, *job.source, shape.morph_weights, mesh) : Status(targets.error());
+        if (morphed)
+            job.targets = std::move(*targets);
+        else
+        {
+            mesh = primitive.mesh;
+            job.warnings.push_back(
+                warningOf(WarningKind::kBadGeometry, morphed.error(), pointer, "it is drawn without morphing"));
+        }
+    }
+    mesh.sources.resize(mesh.positions.size());
+    std::iota(mesh.sources.begin(), mesh.sources.end(), 0u);
+    primitive.mesh.triangles = {};
+    job.base = std::move(primitive);
+    job.result = std::move(mesh);
+}
+
 /// @param pose of the shape's skin, null without one
 void readGeometry(const tinygltf::Model& model, const SkinPose* pose, Job& job)
 {
@@ -145,7 +202,8 @@ void readGeometry(const tinygltf::Model& model, const SkinPose* pose, Job& job)
     const auto leaveOut = [&](const Error& error)
     { job.warnings.push_back(warningOf(WarningKind::kBadGeometry, error, pointer, "the primitive is left out")); };
     auto read = readPrimitive(model, *job.source,
-                              {.morph_weights = shape.morph_weights, .joint_count = pose ? pose->joints.size() : 0},
+                              {.morph_weights = shape.morphs ? std::span<const double>() : shape.morph_weights,
+                               .joint_count = pose ? pose->joints.size() : 0},
                               pointer, job.warnings);
     if (!read)
         return leaveOut(read.error());
@@ -156,10 +214,13 @@ void readGeometry(const tinygltf::Model& model, const SkinPose* pose, Job& job)
     {
         job.weightless_vertices = primitive.influences.weightless_vertices;
         job.lacks_joints = !job.source->attributes.contains("JOINTS_0");
-        if (const Status status = skinMesh(*pose, primitive.influences, shape.skinned->to_world, primitive.mesh);
-            !status)
-            return leaveOut(status.error());
     }
+    if (shape.moves)
+        return keepBase(model, std::move(primitive), pointer, job);
+    if (pose != nullptr)
+        if (const auto mirrored = skinMesh(*pose, primitive.influences, shape.skinned->to_world, primitive.mesh);
+            !mirrored)
+            return leaveOut(mirrored.error());
     job.result = std::move(primitive.mesh);
 }
 
@@ -188,13 +249,62 @@ void completeGeometry(const SceneData& scene, Job& job)
             generateTangents(*job.result, map == gpu::kNone ? TextureUse{} : scene.texture_uses[map]);
 }
 
+Influences expanded(const Influences& influences, const std::vector<uint32_t>& sources)
+{
+    Influences result{.per_vertex = influences.per_vertex};
+    for (const uint32_t v : sources)
+        for (size_t k = 0; k < influences.per_vertex; ++k)
+        {
+            result.joints.push_back(influences.joints[v * influences.per_vertex + k]);
+            result.weights.push_back(influences.weights[v * influences.per_vertex + k]);
+        }
+    return result;
+}
+
+/// Sets apart what moves a complete primitive, and places it as at rest.
+void completeMotion(const SkinPose* pose, Job& job)
+{
+    if (!job.result || !job.shape->moves)
+        return;
+    MeshPrimitive& mesh = *job.result;
+    MovingVertices moving;
+    const MeshPrimitive& base = job.base.mesh;
+    for (size_t v = 0; v < mesh.positions.size(); ++v)
+    {
+        const uint32_t source = mesh.sources[v];
+        moving.positions.push_back(base.positions[source]);
+        moving.normals.push_back(base.normals.empty() ? mesh.normals[v] : base.normals[source]);
+        if (!mesh.tangents.empty())
+            moving.tangents.push_back(base.tangents.empty() ? mesh.tangents[v] : base.tangents[source]);
+    }
+    if (pose != nullptr)
+    {
+        auto mirrored =
+            skinMesh(*pose, expanded(job.base.influences, mesh.sources), job.shape->skinned->to_world, mesh);
+        if (!mirrored)
+        {
+            job.late_warnings.push_back(warningOf(WarningKind::kBadGeometry, mirrored.error(),
+                                                  fmt::format("/meshes/{}/primitives/{}", job.shape->mesh, job.number),
+                                                  "the primitive is left out"));
+            job.result.reset();
+            return;
+        }
+        moving.mirrored = std::move(*mirrored);
+    }
+    moving.sources = std::move(mesh.sources);
+    moving.influences = std::move(job.base.influences);
+    moving.targets = std::move(job.targets);
+    mesh.moving = std::move(moving);
+}
+
 void noteGaps(const std::vector<Job>& jobs, SceneData& scene)
 {
     uint64_t weightless_vertices = 0;
     uint64_t without_joints = 0;
     for (const Job& job : jobs)
     {
-        if (!job.result && job.warnings.empty() &&
+        scene.warnings.insert(scene.warnings.end(), job.late_warnings.begin(), job.late_warnings.end());
+        if (!job.result && job.warnings.empty() && job.late_warnings.empty() &&
             !job.source->attributes.empty()) // else it was damaged, and that is said
             ++scene.counts.dropped_primitives;
         scene.counts.generated_normals += job.generated_normals;
@@ -233,6 +343,31 @@ void takePrimitives(std::vector<Job>& jobs, std::vector<Shape>& shapes, Imported
         imported.primitives.push_back(std::move(*job.result));
     }
 }
+/// Those that move, or change otherwise.
+void addLightsAndCameras(const tinygltf::Model& model, const std::vector<Animation>& animations,
+                         const MovingNodes& moving, const SceneNodes& nodes, SceneData& scene, MotionBuilder& motion)
+{
+    using package::ChannelObject;
+    std::set<std::pair<ChannelObject, size_t>> changing;
+    for (const Animation& animation : animations)
+        for (const AnimationTrack& track : animation.tracks)
+            changing.emplace(package::kindOf(track.target)->object, track.item);
+    for (size_t i = 0; i < nodes.light_nodes.size(); ++i)
+    {
+        const size_t node = nodes.light_nodes[i];
+        const int light = lightOf(model.nodes[node]);
+        if (!moving.places[node] && !changing.contains({ChannelObject::kLight, size_t(light)}))
+            continue;
+        scene.lights[i].moves = true;
+        motion.addLight(uint32_t(i), node, model.lights[size_t(light)]);
+    }
+    for (size_t i = 0; i < nodes.camera_nodes.size(); ++i)
+    {
+        const size_t node = nodes.camera_nodes[i];
+        if (moving.places[node] || changing.contains({ChannelObject::kCamera, size_t(model.nodes[node].camera)}))
+            motion.addCamera(uint32_t(i), node);
+    }
+}
 } // namespace
 
 Result<ImportedScene> importScene(const GltfFile& file, const ImportChoice& choice)
@@ -241,37 +376,52 @@ Result<ImportedScene> importScene(const GltfFile& file, const ImportChoice& choi
     const Result<int> variant = findVariant(model, choice.variant);
     if (!variant)
         return variant.error();
-    Result<SceneNodes> nodes = walkScene(model, choice.scene);
-    if (!nodes)
-        return nodes.error();
     ImportedScene imported;
     SceneData& scene = imported.scene;
+    scene.warnings = file.warnings;
+    const std::vector<Animation> animations = readAnimations(file, scene.warnings);
+    const MovingNodes moving(model, animations);
+    Result<SceneNodes> nodes = walkScene(model, choice.scene, moving.appears);
+    if (!nodes)
+        return nodes.error();
     scene.generator = model.asset.generator;
     scene.copyright = model.asset.copyright;
-    scene.warnings = file.warnings;
     scene.warnings.insert(scene.warnings.end(), nodes->warnings.begin(), nodes->warnings.end());
     scene.lights = std::move(nodes->lights);
     scene.cameras = std::move(nodes->cameras);
 
     std::vector<size_t> shape_of_instance;
-    std::vector<Shape> shapes = shapesInUse(nodes->meshes, shape_of_instance);
+    std::vector<Shape> shapes = shapesInUse(file, moving, nodes->meshes, shape_of_instance);
     std::vector<Job> jobs = primitivesOf(model, shapes);
     const std::map<int, SkinPose> poses = poseSkins(file, shapes, scene.warnings);
     if (const Status status = checkVertexTotal(model, jobs); !status)
         return status.error();
     readAll(file, poses, jobs, scene.warnings);
-    readMaterials(file, *variant, jobs, imported);
-    parallelFor(jobs.size(), [&](size_t i) { completeGeometry(scene, jobs[i]); });
+    const std::vector<int> material_of = readMaterials(file, *variant, jobs, imported);
+    parallelFor(jobs.size(),
+                [&](size_t i)
+                {
+                    completeGeometry(scene, jobs[i]);
+                    completeMotion(poseOf(poses, *jobs[i].shape), jobs[i]);
+                });
     noteGaps(jobs, scene);
 
     takePrimitives(jobs, shapes, imported);
+    MotionBuilder motion(model, animations);
     for (size_t i = 0; i < nodes->meshes.size(); ++i)
     {
         const Shape& shape = shapes[shape_of_instance[i]];
-        Transform to_world = nodes->meshes[i].to_world;
-        if (const SkinPose* const pose = poseOf(poses, shape))
-            to_world = Transform{.translation = {pose->origin.x, pose->origin.y, pose->origin.z}};
-        imported.instances.push_back({shape.first_primitive, shape.primitive_count, to_world});
+        ImportedInstance instance{shape.first_primitive, shape.primitive_count, nodes->meshes[i].to_world};
+        const SkinPose* const pose = poseOf(poses, shape);
+        if (pose != nullptr)
+            instance.to_world = Transform{.translation = {pose->origin.x, pose->origin.y, pose->origin.z}};
+        if (shape.moves)
+            instance.moving = motion.addObject(nodes->meshes[i], pose);
+        imported.instances.push_back(instance);
     }
+    std::stable_partition(imported.instances.begin(), imported.instances.end(),
+                          [](const ImportedInstance& instance) { return !instance.moving; });
+    addLightsAndCameras(model, animations, moving, *nodes, scene, motion);
+    scene.motion = motion.finish(material_of);
     return imported;
 }

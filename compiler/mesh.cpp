@@ -93,6 +93,7 @@ uint32_t duplicateVertex(MeshPrimitive& mesh, uint32_t v)
     copy(mesh.uv0);
     copy(mesh.uv1);
     copy(mesh.colors);
+    copy(mesh.sources);
     return uint32_t(mesh.positions.size() - 1);
 }
 

@@ -2,6 +2,8 @@
 
 #include "compiler/flatten.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <limits>
 
@@ -127,6 +129,30 @@ std::vector<uint8_t> encodeMeta(const fb::MetaT& meta)
     flatbuffers::FlatBufferBuilder builder;
     fb::FinishMetaBuffer(builder, fb::Meta::Pack(builder, &meta));
     return {builder.GetBufferPointer(), builder.GetBufferPointer() + builder.GetSize()};
+}
+
+Result<std::vector<uint8_t>> encodeMotion(const SceneData& scene, const LightTables& lights)
+{
+    fb::MotionT tables = fb::MotionT(scene.motion->tables);
+    size_t channels = 0;
+    for (const auto& clip : tables.clips)
+        channels += 1 + clip->channels.size();
+    const size_t total = tables.nodes.size() + tables.bones.size() + tables.objects.size() + tables.lights.size() +
+                         tables.cameras.size() + tables.materials.size() + channels;
+    if (total >= package::kMaxMotionTables)
+        return Error{ExitCode::kUnsupported,
+                     fmt::format("its animations have {} nodes, joints, channels and objects; at most {} are supported",
+                                 total, package::kMaxMotionTables)};
+    for (const auto& light : tables.lights)
+        light->light = lights.of_punctual[light->light];
+    for (const auto& object : tables.objects)
+        object->caustic_target = lights.caustic_target_of[scene.mesh.objects[object->first_triangle]];
+    flatbuffers::FlatBufferBuilder builder;
+    fb::FinishMotionBuffer(builder, fb::Motion::Pack(builder, &tables));
+    if (builder.GetSize() > package::kMaxMotionBytes)
+        return Error{ExitCode::kUnsupported, fmt::format("its animations take {} bytes; at most {} are supported",
+                                                         builder.GetSize(), package::kMaxMotionBytes)};
+    return std::vector<uint8_t>(builder.GetBufferPointer(), builder.GetBufferPointer() + builder.GetSize());
 }
 
 package::StoredGeometry foldGeometry(const WorldMesh& mesh, const Bvh& bvh)

@@ -20,5 +20,9 @@ void noteInputs(const std::vector<InputFile>& files, const std::optional<Content
 /// The META chunk's bytes.
 std::vector<uint8_t> encodeMeta(const lumicut::fb::MetaT& meta);
 
+/// The MOTN chunk's bytes, with lights as LITE numbers them.
+/// @return kUnsupported where there is too much for a reader
+Result<std::vector<uint8_t>> encodeMotion(const SceneData& scene, const LightTables& lights);
+
 /// The mesh and its hierarchy; refers to the mesh's positions.
 package::StoredGeometry foldGeometry(const WorldMesh& mesh, const Bvh& bvh);

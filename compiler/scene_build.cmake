@@ -5,6 +5,7 @@ add_library(lumicut_scene_build STATIC
     ${CMAKE_CURRENT_LIST_DIR}/build_bvh.cpp
     ${CMAKE_CURRENT_LIST_DIR}/bvh_balance.cpp
     ${CMAKE_CURRENT_LIST_DIR}/bvh_collapse.cpp
+    ${CMAKE_CURRENT_LIST_DIR}/bvh_moving.cpp
     ${CMAKE_CURRENT_LIST_DIR}/bvh_split.cpp
     ${CMAKE_CURRENT_LIST_DIR}/build_lights.cpp
     ${CMAKE_CURRENT_LIST_DIR}/caustic_targets.cpp

@@ -1,10 +1,13 @@
 // The scene between reading glTF and writing the package.
 #pragma once
 #include "compiler/warnings.h"
+#include "format/gpu_motion.h"
 #include "format/gpu_scene.h"
+#include "format/motion_generated.h"
 #include "format/vec3d.h"
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -47,6 +50,19 @@ struct WorldMesh
     std::vector<uint32_t> materials;               // [triangle_count] index into SceneData::materials
     std::vector<uint32_t> objects;                 // [triangle_count] which mesh node it came from, 0..object_count-1
     uint32_t object_count = 0;
+    std::vector<uint32_t>
+        moving; // first triangle of each object that moves; they come last and end where the next begins
+
+    size_t staticTriangleCount() const { return moving.empty() ? triangles.size() : moving.front(); }
+};
+
+/// What moves the last vertices of the mesh, and lights and cameras.
+struct MotionData
+{
+    lumicut::fb::MotionT tables; // lights and cameras by their number in SceneData until the package is made
+    std::vector<gpu::MovingVertex> vertices; // the last ones of the mesh
+    std::vector<gpu::Influence> influences;
+    std::vector<gpu::MorphOffset> morph_offsets;
 };
 
 struct PunctualLight
@@ -57,6 +73,7 @@ struct PunctualLight
     gpu::vec3 intensity{};            // W/sr (point, spot; per squared unit of length) or W/m^2 (directional), coloured
     float inner_cone = 0;             // radians, spot
     float outer_cone = 0.785398163f;
+    bool moves = false; // it is kept where it has no power at rest
 };
 
 /// Equirectangular radiance, mapping as in gpu_scene.h.
@@ -104,5 +121,6 @@ struct SceneData
     std::vector<PunctualLight> lights;
     std::optional<EnvironmentImage> environment;
     std::vector<CameraView> cameras;
+    std::shared_ptr<MotionData> motion; // null: nothing moves
     ImportCounts counts;
 };

@@ -9,11 +9,13 @@ namespace package
 {
 inline constexpr std::array<uint8_t, 12> kMagic{0xAB, 'L', 'U', 'M', 'I', ' ', '1', 0xBB, '\r', '\n', 0x1A, '\n'};
 inline constexpr uint16_t kVersionMajor = 3;     // readers refuse another
-inline constexpr uint16_t kVersionMinor = 0;     // readers ignore a higher one
+inline constexpr uint16_t kVersionMinor = 1;     // readers ignore a higher one
 inline constexpr uint32_t kBulkAlignment = 4096; // of uncompressed bulk chunks: mapped pages go to the GPU as they lie
 inline constexpr uint32_t kSmallAlignment = 16;  // of META and compressed chunks
 inline constexpr uint64_t kMaxExpansion = 1024;  // raw_bytes <= this x stored_bytes: bounds what a reader allocates
 inline constexpr uint64_t kMaxMetaBytes = 64u << 20;
+inline constexpr uint64_t kMaxMotionBytes = 512u << 20;
+inline constexpr uint32_t kMaxMotionTables = 1u << 22; // nodes, bones, channels, objects: bounds what a reader verifies
 inline constexpr uint32_t kMaxChunkCount = 64;
 
 struct Header // at byte 0, little-endian
@@ -57,6 +59,17 @@ inline constexpr uint32_t kLightAliasesChunk = fourcc("LALS");      // gpu::Alia
 inline constexpr uint32_t kEnvironmentChunk = fourcc("ENVR");       // float[4][width * height]
 inline constexpr uint32_t kEnvironmentTexelsChunk = fourcc("EIMP"); // gpu::EnvironmentTexel[importance w * h]
 inline constexpr uint32_t kCausticTargetsChunk = fourcc("CTGT");    // gpu::CausticTarget[], may be absent
+// Since version 3.1; a package has them where something moves. Without them it shows the same at rest.
+inline constexpr uint32_t kMotionChunk = fourcc("MOTN");         // FlatBuffer lumicut.fb.Motion
+inline constexpr uint32_t kMovingVerticesChunk = fourcc("MVTX"); // gpu::MovingVertex[], of the last vertices of VPOS
+inline constexpr uint32_t kInfluencesChunk = fourcc("MINF");     // gpu::Influence[]
+inline constexpr uint32_t kMorphOffsetsChunk = fourcc("MMRF");   // gpu::MorphOffset[], may be absent
+
+/// Whether a reader that does not know a chunk must refuse the file.
+constexpr bool isRequired(uint32_t id)
+{
+    return id != kMotionChunk && id != kMovingVerticesChunk && id != kInfluencesChunk && id != kMorphOffsetsChunk;
+}
 
 struct ChunkEntry
 {

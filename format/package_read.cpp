@@ -17,6 +17,7 @@ struct Package::State
     Container container;
     Contents contents;
     std::optional<UnfoldedGeometry> geometry;
+    MovingGeometry moving;
 };
 
 namespace
@@ -39,7 +40,7 @@ Status read(std::span<const std::byte> bytes, State& state)
         state.contents = *contents;
         state.file_bytes = bytes.size();
         state.geometry.emplace(state.contents);
-        return verifyContents(state.contents, *state.geometry, bytes.size() >= kParallelBytes);
+        return verifyContents(state.contents, *state.geometry, state.moving, bytes.size() >= kParallelBytes);
     }
     catch (const std::bad_alloc&)
     {
@@ -121,6 +122,42 @@ std::span<const gpu::vec4> Package::environmentMap() const
 std::span<const gpu::CausticTarget> Package::causticTargets() const
 {
     return state_->contents.caustic_targets;
+}
+const lumicut::fb::Motion* Package::motion() const
+{
+    return state_->contents.motion;
+}
+std::span<const gpu::MovingVertex> Package::movingVertices() const
+{
+    return state_->contents.moving_vertices;
+}
+std::span<const gpu::Influence> Package::influences() const
+{
+    return state_->contents.influences;
+}
+std::span<const gpu::MorphOffset> Package::morphOffsets() const
+{
+    return state_->contents.morph_offsets;
+}
+std::span<const MovingRange> Package::movingRanges() const
+{
+    return state_->moving.objects;
+}
+uint32_t Package::firstMovingNode() const
+{
+    return state_->moving.first_node;
+}
+uint32_t Package::firstMovingSlot() const
+{
+    return state_->moving.first_slot;
+}
+uint32_t Package::firstMovingTriangle() const
+{
+    return state_->moving.first_triangle;
+}
+uint32_t Package::firstMovingVertex() const
+{
+    return state_->moving.first_vertex;
 }
 std::span<const ChunkEntry> Package::chunks() const
 {

@@ -1,7 +1,10 @@
 // Opens .lumi packages: maps the file and verifies everything shaders rely on before a byte reaches the GPU.
 // This is the security boundary: shaders do not bounds-check. See FORMAT.md, "What a reader verifies".
 #pragma once
+#include "format/gpu_motion.h"
 #include "format/gpu_scene.h"
+#include "format/motion_generated.h"
+#include "format/moving_range.h"
 #include "format/package_generated.h"
 #include "format/package_layout.h"
 #include "format/result.h"
@@ -39,6 +42,18 @@ public:
     std::span<const gpu::vec4> environmentMap() const; // RGBA32F, empty without environment
     std::span<const gpu::CausticTarget> causticTargets() const;
     std::span<const std::byte> texturePage(uint32_t page) const;
+
+    const lumicut::fb::Motion* motion() const;                 // null where nothing moves
+    std::span<const gpu::MovingVertex> movingVertices() const; // of the vertices from firstMovingVertex() on
+    std::span<const gpu::Influence> influences() const;
+    std::span<const gpu::MorphOffset> morphOffsets() const;
+    std::span<const MovingRange> movingRanges() const; // by motion()->objects()
+    /// From these on everything moves, before them nothing does; the sizes of the arrays where no geometry moves. The
+    /// root is node 0, whose children may be of both kinds.
+    uint32_t firstMovingNode() const;
+    uint32_t firstMovingSlot() const; // into bvhTriangles()
+    uint32_t firstMovingTriangle() const;
+    uint32_t firstMovingVertex() const;
 
     std::span<const ChunkEntry> chunks() const; // the table, for `lumicut-pkg info`
     uint64_t fileBytes() const;

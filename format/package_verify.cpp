@@ -50,6 +50,27 @@ Status readMeta(const Container& container, const lumicut::fb::Meta*& out)
     return Success{};
 }
 
+/// Leaves `out` null where there is no such chunk.
+Status readMotion(const Container& container, const lumicut::fb::Motion*& out)
+{
+    const std::span<const std::byte> bytes = container.find(kMotionChunk);
+    if (bytes.empty())
+        return Success{};
+    const auto* data = reinterpret_cast<const uint8_t*>(bytes.data());
+    if (bytes.size() < 16 || !lumicut::fb::MotionBufferHasIdentifier(data))
+        return invalid("chunk MOTN: it is no FlatBuffer with the identifier MOTN");
+    if (bytes.size() > kMaxMotionBytes)
+        return invalid("chunk MOTN: it has {} bytes, allowed are {}", bytes.size(), kMaxMotionBytes);
+    flatbuffers::Verifier::Options options;
+    options.max_depth = 16;
+    options.max_tables = kMaxMotionTables;
+    flatbuffers::Verifier verifier(data, bytes.size(), options);
+    if (!lumicut::fb::VerifyMotionBuffer(verifier))
+        return invalid("chunk MOTN: its FlatBuffer is damaged or lacks a required field");
+    out = lumicut::fb::GetMotion(data);
+    return Success{};
+}
+
 uint64_t pageBytes(const lumicut::fb::TexturePage& page)
 {
     uint64_t bytes = 0;
@@ -121,7 +142,10 @@ Status readArrays(const Container& container, Contents& contents)
                           readArray(container, kLightAliasesChunk, optional, contents.light_aliases),
                           readArray(container, kEnvironmentChunk, optional, contents.environment_map),
                           readArray(container, kEnvironmentTexelsChunk, optional, contents.environment_texels),
-                          readArray(container, kCausticTargetsChunk, optional, contents.caustic_targets)})
+                          readArray(container, kCausticTargetsChunk, optional, contents.caustic_targets),
+                          readArray(container, kMovingVerticesChunk, optional, contents.moving_vertices),
+                          readArray(container, kInfluencesChunk, optional, contents.influences),
+                          readArray(container, kMorphOffsetsChunk, optional, contents.morph_offsets)})
     {
         if (!status)
             return status;
@@ -143,10 +167,12 @@ Result<Contents> readContents(const Container& container)
         return status.error();
     if (Status status = readTexturePages(container, contents); !status)
         return status.error();
+    if (Status status = readMotion(container, contents.motion); !status)
+        return status.error();
     return contents;
 }
 
-Status verifyContents(const Contents& contents, UnfoldedGeometry& geometry, bool parallel)
+Status verifyContents(const Contents& contents, UnfoldedGeometry& geometry, MovingGeometry& moving, bool parallel)
 {
     if (Status meta = verifyMeta(contents); !meta) // everything refers to its bounds
         return meta;
@@ -154,13 +180,16 @@ Status verifyContents(const Contents& contents, UnfoldedGeometry& geometry, bool
     const auto add = [&](Status (*verify)(const Contents&))
     { tasks.emplace_back([&contents, verify] { return verify(contents); }); };
     geometry.addFirst(contents, tasks);
-    for (const auto verify : {verifyMaterials, verifyTextureRefs, verifyEnvironment, verifyCausticTargets})
+    for (const auto verify :
+         {verifyMaterials, verifyTextureRefs, verifyEnvironment, verifyCausticTargets, verifyMotion})
         add(verify);
     if (Status status = runAll(tasks, parallel); !status)
         return status;
     tasks.clear();
     geometry.addSecond(contents, tasks);
     add(verifyLights);
+    add(verifyMovingVertices);
+    tasks.emplace_back([&] { return findMovingGeometry(contents, moving); });
     return runAll(tasks, parallel);
 }
 } // namespace package

@@ -1,6 +1,9 @@
 // What a package's chunks must hold before shaders may index by them. FORMAT.md, "What a reader verifies", lists it.
 #pragma once
+#include "format/gpu_motion.h"
 #include "format/gpu_scene.h"
+#include "format/motion_generated.h"
+#include "format/moving_range.h"
 #include "format/package_container.h"
 #include "format/package_generated.h"
 #include "format/result.h"
@@ -13,6 +16,7 @@
 #include <cstddef>
 #include <initializer_list>
 #include <span>
+#include <vector>
 
 namespace package
 {
@@ -45,6 +49,10 @@ struct Contents
     std::span<const gpu::vec4> environment_map;
     std::span<const gpu::CausticTarget> caustic_targets;
     std::array<std::span<const std::byte>, gpu::kTexturePageCount> texture_pages;
+    const lumicut::fb::Motion* motion = nullptr; // null: nothing moves
+    std::span<const gpu::MovingVertex> moving_vertices;
+    std::span<const gpu::Influence> influences;
+    std::span<const gpu::MorphOffset> morph_offsets;
 };
 
 /// Gives every chunk its type: the FlatBuffer is verified, sizes are whole multiples, what must be there is there.
@@ -52,7 +60,8 @@ Result<Contents> readContents(const Container& container);
 
 struct UnfoldedGeometry;
 /// Fills `geometry`, which was made for `contents`, and verifies everything in `contents` that anybody indexes or divides by.
-Status verifyContents(const Contents& contents, UnfoldedGeometry& geometry, bool parallel);
+/// Fills `moving`, too.
+Status verifyContents(const Contents& contents, UnfoldedGeometry& geometry, MovingGeometry& moving, bool parallel);
 
 // The parts of verifyContents(); those of geometry are in unfold_geometry.h.
 Status verifyMeta(const Contents& contents);
@@ -61,6 +70,10 @@ Status verifyTextureRefs(const Contents& contents);
 Status verifyLights(const Contents& contents);
 Status verifyEnvironment(const Contents& contents);
 Status verifyCausticTargets(const Contents& contents);
+Status verifyMotion(const Contents& contents);         // nodes, bones, clips and what they set
+Status verifyMovingVertices(const Contents& contents); // needs the former
+/// Finds what moves among the unfolded geometry, which must be verified.
+Status findMovingGeometry(const Contents& contents, MovingGeometry& moving);
 
 /// kInvalid with a formatted sentence.
 template <typename... Args>
@@ -93,6 +106,10 @@ inline bool isWithin(float value, float low, float high)
 inline bool isWithin(const gpu::vec3& v, float low, float high)
 {
     return isWithin(v.x, low, high) && isWithin(v.y, low, high) && isWithin(v.z, low, high);
+}
+inline bool isFinite(const gpu::vec4& v)
+{
+    return isFinite({v.x, v.y, v.z, v.w});
 }
 inline float dot(const gpu::vec3& a, const gpu::vec3& b)
 {

@@ -55,7 +55,7 @@ std::vector<Pending> prepare(std::span<const ChunkSource> chunks, const WriteOpt
         p.stored = packed ? std::span<const std::byte>(p.compressed) : chunk.bytes;
         p.entry = {.id = chunk.id,
                    .index = chunk.index,
-                   .required = 1,
+                   .required = isRequired(chunk.id),
                    .codec = packed ? Codec::kZstd : Codec::kNone,
                    .alignment = bulk && !packed ? kBulkAlignment : kSmallAlignment,
                    .reserved = 0,

@@ -33,10 +33,11 @@ struct PosedMaterial
 
 struct Pose
 {
-    std::vector<gpu::BoneMatrix> bones; // by Motion.bones; all 0 where hidden: such triangles have no area and are never met
-    std::vector<float> weights;         // by Motion.weights
-    std::vector<PosedLight> lights;     // by Motion.lights
-    std::vector<PosedCamera> cameras;   // by Motion.cameras
+    std::vector<gpu::BoneMatrix>
+        bones;                  // by Motion.bones; all 0 where hidden: such triangles have no area and are never met
+    std::vector<float> weights; // by Motion.weights
+    std::vector<PosedLight> lights;       // by Motion.lights
+    std::vector<PosedCamera> cameras;     // by Motion.cameras
     std::vector<PosedMaterial> materials; // those that channels of the clip set
 };
 

@@ -215,7 +215,7 @@ package::ChunkEntry& envr(std::vector<package::ChunkEntry>& table)
 
 // clang-format off
 const ShellCase kShellCases[] = {
-    {"NewerVersion", ExitCode::kUnsupported, "version 4.0", [](auto& h, auto&) { h.version_major = 4; }},
+    {"NewerVersion", ExitCode::kUnsupported, "version 4.0", [](auto& h, auto&) { h.version_major = 4; h.version_minor = 0; }},
     {"OlderVersion", ExitCode::kUnsupported, "compile it again", [](auto& h, auto&) { h.version_major = 1; }},
     {"HeaderReserved", ExitCode::kInvalid, "header's reserved", [](auto& h, auto&) { h.reserved = 1; }},
     {"NoChunks", ExitCode::kInvalid, "counts 0 chunks", [](auto& h, auto&) { h.chunk_count = 0; }},
