@@ -210,9 +210,12 @@ Result<CompileReport> runPipeline(const CompileOptions& options)
     CompileReport report;
     Stopwatch watch(options, report.stages);
 
-    const Result<GltfFile> file = readGltf(options.input);
+    Result<GltfFile> file = readGltf(options.input);
     if (!file)
         return file.error();
+    if (options.time)
+        if (const Status status = bakePose(*options.time, *file); !status)
+            return status.error();
     watch.stage("read", fmt::format("{} meshes, {} materials, {} images", file->model.meshes.size(),
                                     file->model.materials.size(), file->images.size()));
 

@@ -1,5 +1,6 @@
 // The compiler's pipeline: one glTF scene in, one package out.
 #pragma once
+#include "compiler/bake_pose.h"
 #include "compiler/cache.h"
 #include "compiler/input_files.h"
 #include "compiler/scene_data.h"
@@ -24,10 +25,11 @@ enum class DefaultLight
 
 struct CompileOptions
 {
-    std::filesystem::path input;  // .gltf or .glb
-    std::filesystem::path output; // .lumi
-    std::string scene{};          // of the file, name or index; empty: its default
-    std::string variant{};        // of KHR_materials_variants; empty: none
+    std::filesystem::path input;     // .gltf or .glb
+    std::filesystem::path output;    // .lumi
+    std::string scene{};             // of the file, name or index; empty: its default
+    std::string variant{};           // of KHR_materials_variants; empty: none
+    std::optional<BakedTime> time{}; // that the package shows without moving; none: it carries the animations
     std::optional<std::filesystem::path> environment{};
     float environment_rotation = 0; // radians about +Y, -pi to pi
     float environment_scale = 1;    // > 0, of its radiance

@@ -137,6 +137,8 @@ public:
         transformVertices(primitive, to_world);
         if (!std::all_of(world_.begin(), world_.end(), [](gpu::vec3 p) { return isFinite(p); }))
             return false;
+        if (place.hidden)
+            std::fill(world_.begin(), world_.end(), hiding_place_);
         for (std::vector<uint32_t>& slots : slots_)
             slots.assign(primitive.positions.size(), kUnset);
         const bool mirrored = to_world.determinant() < 0;
@@ -172,6 +174,12 @@ public:
     }
 
     size_t triangleCount() const { return mesh_.triangles.size(); }
+    /// A vertex that stands still, so that what is hidden does not widen the scene.
+    void chooseHidingPlace()
+    {
+        if (!mesh_.positions.empty())
+            hiding_place_ = mesh_.positions.front();
+    }
     /// From the next triangle on there is another object that moves.
     void beginMoving() { mesh_.moving.push_back(uint32_t(mesh_.triangles.size())); }
     void dropEmpty()
@@ -356,6 +364,7 @@ private:
     WorldMesh mesh_;
     // Of the primitive being added:
     std::vector<gpu::vec3> world_;               // positions
+    gpu::vec3 hiding_place_{0, 0, 0};            // where objects are that nobody sees at rest
     std::vector<Vec3d> normals_;                 // unit, 0 where the file's has no direction
     std::vector<Vec3d> tangents_;                // unit or 0
     std::array<std::vector<uint32_t>, 2> slots_; // places of its vertices in mesh_: as they are, with normals flipped
@@ -388,7 +397,10 @@ Result<WorldMesh> flatten(ImportedScene& imported, ImportCounts& counts, Warning
     for (const ImportedInstance& instance : imported.instances)
     {
         if (instance.moving)
+        {
+            flattener.chooseHidingPlace();
             flattener.beginMoving();
+        }
         const size_t first_triangle = flattener.triangleCount();
         for (size_t p = 0; p < instance.primitive_count; ++p)
         {

@@ -140,8 +140,7 @@ Result<AnimationTrack> readTrack(const GltfFile& file, const GltfChannel& channe
         return times ? values.error() : times.error();
     const size_t stride = size_t(width) * (*interpolation == Interpolation::CubicSpline ? 3 : 1);
     if (times->count == 0 || values->values.size() != times->count * stride)
-        return invalid(
-            fmt::format("it has {} values for {} keys of {}", values->values.size(), times->count, stride));
+        return invalid(fmt::format("it has {} values for {} keys of {}", values->values.size(), times->count, stride));
     if (!std::all_of(values->values.begin(), values->values.end(), [](float v) { return std::isfinite(v); }))
         return invalid("a value of it is not finite");
     if (const Status status = checkTimes(times->values); !status)

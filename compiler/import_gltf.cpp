@@ -50,12 +50,15 @@ struct Job
     bool lacks_joints = false; // though its node has a skin
 };
 
-/// Whether animations move an instance: its node, its joints or its morph weights.
-bool moves(const GltfFile& file, const MovingNodes& moving, const MeshInstance& instance)
+/// Whether animations move an instance's node or set its morph weights.
+bool movesByNode(const tinygltf::Model& model, const MovingNodes& moving, const MeshInstance& instance)
 {
-    if (moving.places[instance.node] ||
-        (moving.morphs[instance.node] && morphWeightCount(file.model, file.model.nodes[instance.node]) > 0))
-        return true;
+    return moving.places[instance.node] ||
+           (moving.morphs[instance.node] && morphWeightCount(model, model.nodes[instance.node]) > 0);
+}
+
+bool movesByJoints(const GltfFile& file, const MovingNodes& moving, const MeshInstance& instance)
+{
     if (instance.skin < 0 || size_t(instance.skin) >= file.skins.size())
         return false;
     const std::vector<int>& joints = file.skins[size_t(instance.skin)].joints;
@@ -73,7 +76,8 @@ std::vector<Shape> shapesInUse(const GltfFile& file, const MovingNodes& moving,
     std::map<Key, std::vector<size_t>> instances_of;
     for (size_t i = 0; i < instances.size(); ++i)
         instances_of[{instances[i].mesh, instances[i].morph_weights, instances[i].skin == -1 ? 0 : i + 1,
-                      moves(file, moving, instances[i]), moving.morphs[instances[i].node]}]
+                      movesByNode(file.model, moving, instances[i]) || movesByJoints(file, moving, instances[i]),
+                      moving.morphs[instances[i].node]}]
             .push_back(i);
     std::vector<Shape> shapes;
     shape_of_instance.resize(instances.size());
@@ -394,6 +398,9 @@ Result<ImportedScene> importScene(const GltfFile& file, const ImportChoice& choi
     std::vector<Shape> shapes = shapesInUse(file, moving, nodes->meshes, shape_of_instance);
     std::vector<Job> jobs = primitivesOf(model, shapes);
     const std::map<int, SkinPose> poses = poseSkins(file, shapes, scene.warnings);
+    for (Shape& shape : shapes)
+        if (shape.skinned != nullptr && poseOf(poses, shape) == nullptr) // damaged: its joints move nothing
+            shape.moves = movesByNode(model, moving, *shape.skinned);
     if (const Status status = checkVertexTotal(model, jobs); !status)
         return status.error();
     readAll(file, poses, jobs, scene.warnings);

@@ -23,6 +23,8 @@ struct Arguments
     std::string output;
     std::string scene;
     std::string variant;
+    std::string time;
+    std::string animation;
     std::string environment;
     std::string environment_rotation;
     std::string environment_scale;
@@ -50,6 +52,11 @@ void declare(CLI::App& app, Arguments& a)
                    "Package to write, or the folder for it (default: beside the scene, with .lumi)");
     app.add_option("--scene", a.scene, "Scene of the file, name or index (default: the file's default)");
     app.add_option("--variant", a.variant, "Variant of the file's materials (KHR_materials_variants)");
+    auto* time = app.add_option("--time", a.time,
+                                "Compile the pose at this time in seconds, instead of what moves (default: the package "
+                                "carries the animations)");
+    app.add_option("--animation", a.animation, "Of --time: name or index, or all at once (default: the first)")
+        ->needs(time);
     auto* env = app.add_option("--env", a.environment, "Environment: equirectangular .exr or .hdr, W/(m^2 sr)");
     app.add_option("--env-rotate", a.environment_rotation,
                    "Rotation of the environment about +Y in degrees, counter-clockwise seen from above")
@@ -182,6 +189,15 @@ Result<CompileOptions> toOptions(const CLI::App& app, const Arguments& a)
         return status.error();
     options.scene = a.scene;
     options.variant = a.variant;
+    if (!a.time.empty())
+    {
+        const Result<std::vector<double>> seconds = parseNumbers(a.time, 1);
+        if (!seconds)
+            return Error{ExitCode::kUsage, fmt::format("--time: {} (SECONDS)", seconds.error().message)};
+        if (!(seconds->front() >= 0) || !std::isfinite(seconds->front()))
+            return Error{ExitCode::kUsage, fmt::format("--time \"{}\" is not a time of 0 s or more", a.time)};
+        options.time = BakedTime{seconds->front(), a.animation};
+    }
     const Result<int> level = parseCompression(a.compress);
     if (!level)
         return level.error();

@@ -114,7 +114,8 @@ uint32_t MotionBuilder::node(size_t of_file)
         to->weight_count = morphWeightCount(model_, from);
         if (to->weight_count > 0)
         {
-            std::vector<double> weights = from.weights.empty() ? model_.meshes[size_t(from.mesh)].weights : from.weights;
+            std::vector<double> weights =
+                from.weights.empty() ? model_.meshes[size_t(from.mesh)].weights : from.weights;
             weights.resize(to->weight_count);
             for (const double weight : weights)
                 motion_->tables.weights.push_back(float(weight));
@@ -196,8 +197,8 @@ void MotionBuilder::addEmission(size_t of_file, uint32_t material)
     const tinygltf::Material& from = model_.materials[of_file];
     auto to = std::make_unique<fb::MotionMaterialT>();
     to->material = material;
-    to->emissive = from.emissiveFactor.size() == 3 ? triple(from.emissiveFactor)
-                                                   : std::make_unique<fb::Double3>(0.0, 0.0, 0.0);
+    to->emissive =
+        from.emissiveFactor.size() == 3 ? triple(from.emissiveFactor) : std::make_unique<fb::Double3>(0.0, 0.0, 0.0);
     const auto strength = from.extensions.find("KHR_materials_emissive_strength");
     if (strength != from.extensions.end() && strength->second.Get("emissiveStrength").IsNumber())
         to->strength = strength->second.Get("emissiveStrength").GetNumberAsDouble();

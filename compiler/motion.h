@@ -51,8 +51,8 @@ private:
 
     const tinygltf::Model& model_;
     const std::vector<Animation>& animations_;
-    std::vector<int> parents_;                          // [node], -1: none
-    std::map<size_t, uint32_t> nodes_;                  // by the file's number
-    std::multimap<size_t, uint32_t> lights_, cameras_;  // likewise
+    std::vector<int> parents_;                         // [node], -1: none
+    std::map<size_t, uint32_t> nodes_;                 // by the file's number
+    std::multimap<size_t, uint32_t> lights_, cameras_; // likewise
     std::shared_ptr<MotionData> motion_ = std::make_shared<MotionData>();
 };

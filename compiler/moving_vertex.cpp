@@ -42,8 +42,9 @@ void appendInfluences(const MovingCorner& corner, const MovingPlace& place, std:
 void appendMorphs(const MovingCorner& corner, const MovingPlace& place, std::vector<gpu::MorphOffset>& out)
 {
     const uint32_t source = corner.moving.sources[corner.vertex];
-    const auto of = [source](const std::vector<gpu::vec3>& offsets)
-    { return offsets.empty() ? gpu::vec3{0, 0, 0} : offsets[source]; };
+    const auto of = [source](const std::vector<gpu::vec3>& offsets) {
+        return offsets.empty() ? gpu::vec3{0, 0, 0} : offsets[source];
+    };
     const auto isZero = [](const gpu::vec3& v) { return v.x == 0 && v.y == 0 && v.z == 0; };
     for (uint32_t t = 0; t < corner.moving.targets.size(); ++t)
     {

@@ -91,10 +91,11 @@ Result<std::vector<ChunkEntry>> readTable(std::span<const std::byte> file, const
 
 bool isKnown(uint32_t id)
 {
-    constexpr std::array kKnown{kMetaChunk,        kBvhNodesChunk,          kLeafTrianglesChunk, kTrianglesChunk,
-                                kPositionsChunk,   kVertexAttributesChunk,  kVertexExtrasChunk,  kMaterialsChunk,
-                                kTextureRefsChunk, kTexturePageChunk,       kLightsChunk,        kLightAliasesChunk,
-                                kEnvironmentChunk, kEnvironmentTexelsChunk, kCausticTargetsChunk};
+    constexpr std::array kKnown{kMetaChunk,           kBvhNodesChunk,          kLeafTrianglesChunk,  kTrianglesChunk,
+                                kPositionsChunk,      kVertexAttributesChunk,  kVertexExtrasChunk,   kMaterialsChunk,
+                                kTextureRefsChunk,    kTexturePageChunk,       kLightsChunk,         kLightAliasesChunk,
+                                kEnvironmentChunk,    kEnvironmentTexelsChunk, kCausticTargetsChunk, kMotionChunk,
+                                kMovingVerticesChunk, kInfluencesChunk,        kMorphOffsetsChunk};
     return std::find(kKnown.begin(), kKnown.end(), id) != kKnown.end();
 }
 

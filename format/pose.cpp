@@ -78,16 +78,16 @@ public:
         for (const fb::MotionNode* node : *motion_.nodes())
         {
             const fb::Double4* const r = node->rotation();
-            nodes_.push_back({.translation = toArray(node->translation(), 0),
-                              .scale = toArray(node->scale(), 1),
-                              .rotation = r == nullptr ? std::array{0.0, 0.0, 0.0, 1.0}
-                                                       : std::array{r->x(), r->y(), r->z(), r->w()},
-                              .hidden = node->hidden()});
+            nodes_.push_back(
+                {.translation = toArray(node->translation(), 0),
+                 .scale = toArray(node->scale(), 1),
+                 .rotation = r == nullptr ? std::array{0.0, 0.0, 0.0, 1.0} : std::array{r->x(), r->y(), r->z(), r->w()},
+                 .hidden = node->hidden()});
         }
         weights_.assign(motion_.weights()->begin(), motion_.weights()->end());
         for (const fb::MotionLight* light : *motion_.lights())
-            lights_.push_back({toArray(light->color(), 1), light->intensity(), light->inner_cone(),
-                               light->outer_cone()});
+            lights_.push_back(
+                {toArray(light->color(), 1), light->intensity(), light->inner_cone(), light->outer_cone()});
         for (const fb::MotionCamera* camera : *motion_.cameras())
         {
             const fb::Camera& view = *package.meta().cameras()->Get(camera->camera());
@@ -145,8 +145,8 @@ private:
         case Scale:
             return void(std::copy_n(value.begin(), 3, nodes_[index].scale.begin()));
         case Weights:
-            return void(std::copy(value.begin(), value.end(),
-                                  weights_.begin() + motion_.nodes()->Get(index)->first_weight()));
+            return void(
+                std::copy(value.begin(), value.end(), weights_.begin() + motion_.nodes()->Get(index)->first_weight()));
         case Visibility:
             return void(nodes_[index].hidden = value[0] == 0);
         case LightColor:
@@ -210,10 +210,9 @@ private:
         {
             const fb::MotionNode& node = *motion_.nodes()->Get(i);
             const NodeState& state = nodes_[i];
-            const Transform local =
-                node.matrix() != nullptr
-                    ? toTransform(*node.matrix())
-                    : fromTranslationRotationScale(state.translation, state.rotation, state.scale);
+            const Transform local = node.matrix() != nullptr
+                                        ? toTransform(*node.matrix())
+                                        : fromTranslationRotationScale(state.translation, state.rotation, state.scale);
             const bool root = node.parent() < 0;
             to_world_.push_back(root ? local : to_world_[uint32_t(node.parent())] * local);
             shown_.push_back(!state.hidden && (root || shown_[uint32_t(node.parent())]));
@@ -229,7 +228,8 @@ private:
         const Transform& world = to_world_[bone.node()];
         const Transform m = bone.bind() == nullptr ? world : world * toTransform(*bone.bind());
         const Vec3d t = inPackage({m.translation[0], m.translation[1], m.translation[2]});
-        const auto row = [&](size_t r, double translation) -> gpu::vec4 {
+        const auto row = [&](size_t r, double translation) -> gpu::vec4
+        {
             return {narrow(m.linear[r] / unit_), narrow(m.linear[3 + r] / unit_), narrow(m.linear[6 + r] / unit_),
                     narrow(translation)};
         };

@@ -29,9 +29,8 @@ bool isFinite(const fb::DoubleMatrix* m)
 }
 bool isUnitQuaternion(const fb::Double4* q)
 {
-    return q == nullptr ||
-           (isFinite(*q) &&
-            std::abs(q->x() * q->x() + q->y() * q->y() + q->z() * q->z() + q->w() * q->w() - 1) <= 1e-6);
+    return q == nullptr || (isFinite(*q) && std::abs(q->x() * q->x() + q->y() * q->y() + q->z() * q->z() +
+                                                     q->w() * q->w() - 1) <= 1e-6);
 }
 bool isIndex(int32_t index, size_t count) // -1: none
 {

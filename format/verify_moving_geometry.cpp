@@ -144,8 +144,8 @@ private:
                 moving_.objects[object->second].root_node != gpu::kNone)
                 continue;
             moving_.objects[object->second].root_node = i;
-            const auto after = std::find_if(below.begin() + i, below.end(),
-                                            [&](const Slots& s) { return s.first >= below[i].end; });
+            const auto after =
+                std::find_if(below.begin() + i, below.end(), [&](const Slots& s) { return s.first >= below[i].end; });
             moving_.objects[object->second].node_count = uint32_t(after - below.begin()) - i;
         }
         for (uint32_t o = 0; o < moving_.objects.size(); ++o)

@@ -74,4 +74,37 @@ TEST(MotionOfSharedScenes, PoseAtRestIsThePackagesOwn)
     }
     EXPECT_GE(moving, 20u);
 }
+/// All triangles of a package in a pose, in metres.
+std::vector<Corners> posed(const package::Package& package, const package::Pose& pose)
+{
+    std::vector<Vec3d> positions = restVertices(package);
+    const std::vector<Vec3d> moved = movedVertices(package, pose);
+    std::copy(moved.begin(), moved.end(), positions.begin() + package.firstMovingVertex());
+    return trianglesOver(package, positions);
+}
+
+TEST(MotionOfSharedScenes, PosesAreThoseOfTheSameFilesCompiledAtThatTime)
+{
+    const std::vector<std::filesystem::path> scenes = sharedScenes();
+    if (scenes.empty())
+        GTEST_SKIP() << "shared scenes not found";
+    for (const std::filesystem::path& scene : scenes)
+    {
+        const TemporaryFolder folder;
+        const auto package = compiled({.input = scene, .output = {}}, folder);
+        ASSERT_TRUE(package) << scene << ": " << package.error().message;
+        for (uint32_t clip = 0; package->motion() != nullptr && clip < package->motion()->clips()->size(); ++clip)
+            for (int i = 0; i < (clip == 0 ? 10 : 3); ++i)
+            {
+                const double seconds = package->motion()->clips()->Get(clip)->duration() * (i + 0.37) / 9;
+                const auto baked =
+                    compiled({.input = scene, .output = {}, .time = BakedTime{seconds, std::to_string(clip)}}, folder);
+                ASSERT_TRUE(baked) << scene << ": " << baked.error().message;
+                ASSERT_EQ(baked->motion(), nullptr);
+                const double apart = farthestCorner(posed(*package, package::poseAt(*package, clip, seconds)),
+                                                    trianglesOver(*baked, restVertices(*baked)));
+                EXPECT_LT(apart, 1e-4 * sizeOf(*package)) << scene << " clip " << clip << " at " << seconds << " s";
+            }
+    }
+}
 } // namespace

@@ -27,11 +27,15 @@ bool hasArea(const Corners& t)
 double farthestFrom(const std::vector<Corners>& a, const std::vector<Corners>& b)
 {
     double farthest = 0;
-    for (const Corners& t : a)
+    for (size_t i = 0; i < a.size(); ++i)
     {
+        const Corners& t = a[i];
         if (!hasArea(t))
             continue;
-        double nearest = std::numeric_limits<double>::infinity();
+        // Most have the same number in both: then there is no need to look for a nearer one.
+        double nearest = i < b.size() ? difference(t, b[i], 0) : std::numeric_limits<double>::infinity();
+        if (nearest <= farthest)
+            continue;
         for (const Corners& other : b)
             for (size_t turn = 0; turn < 3; ++turn)
                 nearest = std::min(nearest, difference(t, other, turn));
@@ -83,9 +87,12 @@ std::vector<Vec3d> restVertices(const package::Package& package)
 
 std::vector<Corners> trianglesOver(const package::Package& package, const std::vector<Vec3d>& positions)
 {
+    const lumicut::fb::Vec3d* const o = package.meta().origin();
+    const Vec3d origin = o == nullptr ? Vec3d{} : Vec3d{o->x(), o->y(), o->z()};
+    const auto at = [&](uint32_t v) { return origin + positions[v] * package.meta().unit(); };
     std::vector<Corners> triangles;
     for (const gpu::Triangle& t : package.triangles())
-        triangles.push_back({positions[t.vertices.x], positions[t.vertices.y], positions[t.vertices.z]});
+        triangles.push_back({at(t.vertices.x), at(t.vertices.y), at(t.vertices.z)});
     return triangles;
 }
 

@@ -15,7 +15,7 @@ std::vector<Vec3d> movedVertices(const package::Package& package, const package:
 /// By vertex, as the package has them at rest. Vertices without a triangle are 0.
 std::vector<Vec3d> restVertices(const package::Package& package);
 
-/// Triangles over `positions` of the vertices.
+/// Triangles over `positions` of the vertices, in the source's metres.
 std::vector<Corners> trianglesOver(const package::Package& package, const std::vector<Vec3d>& positions);
 
 /// The largest distance of a corner from that of the triangle of the other list that is most like it, whichever list it is

@@ -106,6 +106,82 @@ SamplePackage::SamplePackage()
     caustic_targets = {{{0.5f, 0.5f, 0.6f}, 0.7f}};
 }
 
+SamplePackage SamplePackage::moving()
+{
+    namespace fb = lumicut::fb;
+    SamplePackage s;
+    fb::MotionT& motion = s.motion.emplace();
+    for (int i = 0; i < 2; ++i)
+    {
+        auto node = std::make_unique<fb::MotionNodeT>();
+        node->name = i == 0 ? "arm" : "hand";
+        node->parent = i - 1;
+        node->weight_count = uint32_t(i);
+        motion.nodes.push_back(std::move(node));
+        auto bone = std::make_unique<fb::BoneT>();
+        bone->node = uint32_t(i);
+        bone->shown_by = 0;
+        motion.bones.push_back(std::move(bone));
+    }
+    motion.nodes[0]->rotation = std::make_unique<fb::Double4>(0.0, 0.0, 0.0, 1.0);
+    motion.bones[1]->bind = std::make_unique<fb::DoubleMatrix>(
+        fb::Double4(1.0, 0.0, 0.0, 0.0), fb::Double4(0.0, 1.0, 0.0, 0.0), fb::Double4(0.0, 0.0, 1.0, 0.0));
+    motion.weights = {0};
+    auto clip = std::make_unique<fb::ClipT>();
+    clip->name = "wave";
+    clip->duration = 2;
+    const auto channel = [&](fb::ChannelTarget target, uint32_t index, fb::Interpolation interpolation,
+                             std::vector<float> times, std::vector<float> values)
+    {
+        auto c = std::make_unique<fb::ChannelT>();
+        c->target = target;
+        c->index = index;
+        c->interpolation = interpolation;
+        c->times = std::move(times);
+        c->values = std::move(values);
+        clip->channels.push_back(std::move(c));
+    };
+    using enum fb::ChannelTarget;
+    constexpr auto Step = fb::Interpolation::Step, Linear = fb::Interpolation::Linear,
+                   CubicSpline = fb::Interpolation::CubicSpline;
+    channel(Translation, 0, CubicSpline, {0, 2}, {0, 0, 0, 0, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 0, 0, 0});
+    channel(Rotation, 1, Linear, {0, 1}, {0, 0, 0, 1, 0, 0, 1, 0});
+    channel(Weights, 1, Linear, {0, 1}, {0, 1});
+    channel(Visibility, 0, Step, {0, 1}, {1, 0});
+    channel(LightIntensity, 0, Linear, {0, 1}, {1, 0});
+    channel(CameraYfov, 0, Linear, {0, 1}, {0.8f, 0.4f});
+    channel(MaterialEmissiveStrength, 1, Linear, {0, 1}, {1, 3});
+    motion.clips.push_back(std::move(clip));
+    auto light = std::make_unique<fb::MotionLightT>();
+    light->color = std::make_unique<fb::Double3>(1.0, 1.0, 1.0);
+    light->intensity = 1;
+    motion.lights.push_back(std::move(light));
+    motion.cameras.push_back(std::make_unique<fb::MotionCameraT>());
+    auto material = std::make_unique<fb::MotionMaterialT>();
+    material->material = 1;
+    material->emissive = std::make_unique<fb::Double3>(2.0, 2.0, 2.0);
+    motion.materials.push_back(std::move(material));
+    auto object = std::make_unique<fb::MovingObjectT>();
+    object->first_triangle = 2;
+    object->triangle_count = 3;
+    object->caustic_target = 0;
+    motion.objects.push_back(std::move(object));
+    for (uint32_t v = 6; v < 15; ++v)
+    {
+        s.moving_vertices.push_back({.position = s.positions[v],
+                                     .first_influence = uint32_t(s.influences.size()),
+                                     .normal = {0, 0, 1},
+                                     .first_morph = uint32_t(s.morph_offsets.size()),
+                                     .tangent = {0, 0, 0, 1}});
+        s.influences.push_back({v % 2, v == 6 ? 0.5f : 1});
+        if (v != 6)
+            continue;
+        s.influences.push_back({1, 0.5f});
+        s.morph_offsets.push_back({{1, 0, 0}, 0, {0, 0, 0}, {0, 0, 0}});
+    }
+    return s;
+}
+
 Result<std::vector<package::WrittenChunk>> SamplePackage::write(const std::filesystem::path& path,
                                                                 const package::WriteOptions& options) const
 {
@@ -126,6 +202,16 @@ Result<std::vector<package::WrittenChunk>> SamplePackage::write(const std::files
         {package::kEnvironmentChunk, 0, std::as_bytes(std::span(environment_map))},
         {package::kEnvironmentTexelsChunk, 0, std::as_bytes(std::span(environment_texels))},
         {package::kCausticTargetsChunk, 0, std::as_bytes(std::span(caustic_targets))}};
+    flatbuffers::FlatBufferBuilder motion_builder;
+    if (motion)
+    {
+        lumicut::fb::FinishMotionBuffer(motion_builder, lumicut::fb::Motion::Pack(motion_builder, &*motion));
+        chunks.push_back({package::kMotionChunk, 0,
+                          std::as_bytes(std::span(motion_builder.GetBufferPointer(), motion_builder.GetSize()))});
+    }
+    chunks.push_back({package::kMovingVerticesChunk, 0, std::as_bytes(std::span(moving_vertices))});
+    chunks.push_back({package::kInfluencesChunk, 0, std::as_bytes(std::span(influences))});
+    chunks.push_back({package::kMorphOffsetsChunk, 0, std::as_bytes(std::span(morph_offsets))});
     for (uint32_t i = 0; i < texture_pages.size(); ++i)
         chunks.push_back({package::kTexturePageChunk, i, texture_pages[i]});
     return package::write(path, chunks, options);

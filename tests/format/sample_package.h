@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 /// The content as plain vectors, free to be spoiled before it is written.
@@ -26,9 +27,17 @@ struct SamplePackage
     std::vector<gpu::vec4> environment_map;
     std::vector<gpu::CausticTarget> caustic_targets;
     std::vector<std::vector<std::byte>> texture_pages;
+    std::optional<lumicut::fb::MotionT> motion;
+    std::vector<gpu::MovingVertex> moving_vertices;
+    std::vector<gpu::Influence> influences;
+    std::vector<gpu::MorphOffset> morph_offsets;
 
     /// Five triangles under two nodes, four materials, two textures, a point, a triangle and an environment light.
     SamplePackage();
+
+    /// The same, of which the second node with the last three triangles moves, and the light, the camera and a material
+    /// change: a clip with every interpolation.
+    static SamplePackage moving();
 
     /// Writes it as the compiler would.
     Result<std::vector<package::WrittenChunk>> write(const std::filesystem::path& path,

@@ -2,6 +2,7 @@
 
 #include "format/check.h"
 #include "format/material.h"
+#include "format/pose.h"
 #include "format/texture_encoding.h"
 
 #include <algorithm>
@@ -104,9 +105,67 @@ double traverse(const package::Package& package, bool reverse)
 }
 } // namespace
 
+namespace
+{
+double walkVertex(const package::Package& package, const package::Pose& pose, uint32_t i)
+{
+    const auto vertices = package.movingVertices();
+    const bool last = i + 1 == vertices.size();
+    double sum = vertices[i].position.x + vertices[i].normal.y + vertices[i].tangent.w;
+    for (uint32_t k = vertices[i].first_influence;
+         k < (last ? package.influences().size() : vertices[i + 1].first_influence); ++k)
+        sum += at(std::span<const gpu::BoneMatrix>(pose.bones), at(package.influences(), k).bone).x.w;
+    for (uint32_t k = vertices[i].first_morph; k < (last ? package.morphOffsets().size() : vertices[i + 1].first_morph);
+         ++k)
+        sum += at(std::span<const float>(pose.weights), at(package.morphOffsets(), k).weight);
+    return sum;
+}
+
+/// All that a player reads to draw a pose.
+double walkPose(const package::Package& package, const package::Pose& pose)
+{
+    double sum = 0;
+    for (uint32_t i = 0; i < package.movingVertices().size(); ++i)
+        sum += walkVertex(package, pose, i);
+    for (const package::PosedLight& light : pose.lights)
+        sum += at(package.lights(), light.index).pmf + light.light.emission.x;
+    for (const package::PosedCamera& camera : pose.cameras)
+        sum += package.meta().cameras()->Get(camera.index)->near_plane() + camera.vertical_fov;
+    for (const package::PosedMaterial& material : pose.materials)
+        sum += at(package.materials(), material.index).alpha + material.material.alpha;
+    return sum;
+}
+
+double walkMotion(const package::Package& package)
+{
+    double sum = walkPose(package, package::poseAtRest(package));
+    const auto clips = package.motion()->clips()->size();
+    for (uint32_t clip = 0; clip < std::min(clips, 4u); ++clip)
+        sum +=
+            walkPose(package, package::poseAt(package, clip, 0.7 * package.motion()->clips()->Get(clip)->duration()));
+    sum += walkPose(package, package::poseAt(package, std::nullopt, 0.5));
+    for (const package::MovingRange& object : package.movingRanges())
+    {
+        for (uint32_t i = 0; i < object.node_count; ++i)
+            sum += at(package.bvhNodes(), object.root_node + i).child.x == gpu::kNone;
+        for (uint32_t i = 0; i < object.triangle_count; ++i)
+        {
+            const uint32_t triangle = at(package.bvhTriangles(), object.first_slot + i).triangle;
+            check(triangle - object.first_triangle < object.triangle_count, "triangle {}", triangle);
+            const gpu::uvec3& v = at(package.triangles(), object.first_triangle + i).vertices;
+            for (const uint32_t vertex : {v.x, v.y, v.z})
+                check(vertex - object.first_vertex < object.vertex_count, "vertex {}", vertex);
+        }
+    }
+    return sum;
+}
+} // namespace
+
 double walkPackage(const package::Package& package)
 {
     double sum = traverse(package, false) + traverse(package, true);
+    if (package.motion() != nullptr)
+        sum += walkMotion(package);
     for (const gpu::AliasEntry& entry : package.lightAliases())
         sum += lightEmission(package, at(package.lights(), entry.alias));
     for (const gpu::Light& light : package.lights())

@@ -46,6 +46,7 @@ void savePackages(const fs::path& folder)
 {
     save(folder / "plain.lumi", SamplePackage(), 0);
     save(folder / "compressed.lumi", SamplePackage(), 3);
+    save(folder / "moving.lumi", SamplePackage::moving(), 0);
     SamplePackage bare;
     bare.lights.clear();
     bare.light_aliases.clear();

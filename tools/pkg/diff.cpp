@@ -50,6 +50,8 @@ struct Side
                 {"texture_pages", double(package.meta().texture_pages()->size())},
                 {"lights", double(package.lights().size())},
                 {"cameras", double(package.meta().cameras()->size())},
+                {"animations", package.motion() == nullptr ? 0.0 : double(package.motion()->clips()->size())},
+                {"moving_triangles", double(package.triangles().size() - package.firstMovingTriangle())},
                 {"file_bytes", double(package.fileBytes())}};
     }
 };

@@ -112,6 +112,27 @@ Json provenance(const lumicut::fb::Provenance& p)
             {"copyright", list(p.copyright())}, {"warnings", list(p.warnings())}};
 }
 
+Json motion(const package::Package& package)
+{
+    const lumicut::fb::Motion* const m = package.motion();
+    if (m == nullptr)
+        return nullptr;
+    Json clips = Json::array();
+    for (const lumicut::fb::Clip* clip : *m->clips())
+        clips.push_back(
+            {{"name", text(clip->name())}, {"duration", clip->duration()}, {"channels", clip->channels()->size()}});
+    return {{"clips", clips},
+            {"nodes", m->nodes()->size()},
+            {"bones", m->bones()->size()},
+            {"objects", m->objects()->size()},
+            {"triangles", package.triangles().size() - package.firstMovingTriangle()},
+            {"vertices", package.movingVertices().size()},
+            {"influences", package.influences().size()},
+            {"morph_offsets", package.morphOffsets().size()},
+            {"lights", m->lights()->size()},
+            {"cameras", m->cameras()->size()}};
+}
+
 Json describe(const package::Package& package)
 {
     const lumicut::fb::Meta& meta = package.meta();
@@ -131,6 +152,7 @@ Json describe(const package::Package& package)
               {"caustic_targets", package.causticTargets().size()},
               {"environment", nullptr},
               {"cameras", cameras(meta)},
+              {"motion", motion(package)},
               {"statistics", statistics(*meta.statistics())},
               {"provenance", provenance(*meta.provenance())},
               {"chunks", chunks(package)}};
@@ -169,6 +191,19 @@ void printCameras(const lumicut::fb::Meta& meta)
                    perspective ? fmt::format("{:.1f} degrees", double(camera->vertical_fov()) * 180 / std::numbers::pi)
                                : fmt::format("orthographic, {:.3g} {}", camera->orthographic_height(), unit));
     }
+}
+
+void printMotion(const package::Package& package)
+{
+    const Json m = motion(package);
+    if (m.is_null())
+        return;
+    fmt::print("motion       {} objects, {} triangles, {} nodes, {} lights, {} cameras\n", m["objects"].get<size_t>(),
+               m["triangles"].get<size_t>(), m["nodes"].get<size_t>(), m["lights"].get<size_t>(),
+               m["cameras"].get<size_t>());
+    for (const Json& clip : m["clips"])
+        fmt::print("animation    \"{}\", {:.4g} s\n", printable(clip["name"].get<std::string>()),
+                   clip["duration"].get<double>());
 }
 
 void printTables(const package::Package& package)
@@ -211,6 +246,7 @@ void printText(const std::filesystem::path& path, const package::Package& packag
         fmt::print("environment  {} x {}, turned by {:.6g} degrees\n", e->width(), e->height(),
                    e->rotation() * 180 / std::numbers::pi);
     printCameras(meta);
+    printMotion(package);
     printTables(package);
     for (const Json& warning : list(p.warnings()))
         fmt::print("warning      {}\n", printable(warning.get<std::string>()));
