@@ -222,8 +222,9 @@ struct SceneInfo // uniform block: what every kernel may need to know of the sce
     uint caustic_target_count;
     uint triangle_count;
     float environment_turn; // by how much of a whole turn the environment is rotated about +Y, -0.5 to 0.5
+    uint first_moving_slot; // BvhTriangles from here on can move; kNone: none can
 };
-GPU_SIZE(SceneInfo, 52);
+GPU_SIZE(SceneInfo, 56);
 
 // ---- Descriptor set 0: the scene, the same for every kernel --------------------------------------------------------
 

@@ -48,16 +48,16 @@ std::vector<Camera> packageCameras(const package::Package& package)
     return cameras;
 }
 
-std::optional<Camera> findCamera(const std::vector<Camera>& cameras, const std::string& name_or_index)
+std::optional<size_t> findCamera(const std::vector<Camera>& cameras, const std::string& name_or_index)
 {
     if (const auto named = std::ranges::find(cameras, name_or_index, &Camera::name); named != cameras.end())
-        return *named;
+        return size_t(named - cameras.begin());
     size_t index = 0;
     const char* end = name_or_index.data() + name_or_index.size();
     const auto [stop, error] = std::from_chars(name_or_index.data(), end, index);
     if (error != std::errc() || stop != end || index >= cameras.size())
         return std::nullopt;
-    return cameras[index];
+    return index;
 }
 
 std::string noCamera(const std::vector<Camera>& cameras, const std::string& name_or_index)
@@ -68,11 +68,10 @@ std::string noCamera(const std::vector<Camera>& cameras, const std::string& name
     return fmt::format("there is no camera '{}'; the package has {}", name_or_index, names);
 }
 
-Result<Camera> chooseCamera(const package::Package& package, const std::string& name_or_index)
+Result<size_t> chooseCamera(const std::vector<Camera>& cameras, const std::string& name_or_index)
 {
-    const std::vector<Camera> cameras = packageCameras(package);
     if (name_or_index.empty())
-        return cameras.front();
+        return size_t(0);
     if (const auto camera = findCamera(cameras, name_or_index))
         return *camera;
     return Error{ExitCode::kUsage, noCamera(cameras, name_or_index)};

@@ -20,15 +20,15 @@ struct Camera
 
 std::vector<Camera> packageCameras(const package::Package& package);
 
-/// Finds a camera by its name, or by its index where no name matches.
-std::optional<Camera> findCamera(const std::vector<Camera>& cameras, const std::string& name_or_index);
+/// The index of a camera that is named so, or has that index where no name matches.
+std::optional<size_t> findCamera(const std::vector<Camera>& cameras, const std::string& name_or_index);
 
 /// The sentence that findCamera() found none, with those that there are.
 std::string noCamera(const std::vector<Camera>& cameras, const std::string& name_or_index);
 
-/// The camera named on the command line, or the first where `name_or_index` is empty.
+/// The index of the camera named on the command line, or of the first where `name_or_index` is empty.
 /// @return kUsage listing the cameras
-Result<Camera> chooseCamera(const package::Package& package, const std::string& name_or_index);
+Result<size_t> chooseCamera(const std::vector<Camera>& cameras, const std::string& name_or_index);
 
 /// What shaders/primary/generate.comp needs of it for a picture of width x height pixels; sampling fields are left 0.
 gpu::CameraParams cameraParams(const Camera& camera, uint32_t width, uint32_t height);

@@ -175,7 +175,7 @@ Result<Camera> KeyReader::packageCamera(const std::vector<Camera>& cameras) cons
     if (camera.is_number_unsigned() && camera.get<uint64_t>() < cameras.size())
         return cameras[camera.get<size_t>()]; // a camera may have a number for its name, and that of another
     if (const auto named = camera.is_string() ? findCamera(cameras, name) : std::nullopt)
-        return *named;
+        return cameras[*named];
     return invalid(noCamera(cameras, name), pointerTo("camera"));
 }
 

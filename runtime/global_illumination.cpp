@@ -256,7 +256,7 @@ void GlobalIllumination::warmUp(const Context& c)
 /// in every frame.
 bool GlobalIllumination::isThere(const Context& c, std::optional<MapOrigin>& made, const PhotonStage::Input& in) const
 {
-    const MapOrigin asked{.lights = scene_.lightsVersion(), .in = in};
+    const MapOrigin asked{.scene = scene_.version(), .in = in};
     if (c.settings.reuse_photons && made == asked)
         return true;
     made = asked;

@@ -78,7 +78,7 @@ private:
 
     struct MapOrigin // what a photon map was made from
     {
-        uint64_t lights; // SceneGpu::lightsVersion()
+        SceneVersion scene;
         PhotonStage::Input in;
         bool operator==(const MapOrigin&) const = default;
     };

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-bool renderSamples(Recorder& rec, Renderer& renderer, const OpenedScene& opened, const Camera& camera, uint32_t seed,
+bool renderSamples(Recorder& rec, Renderer& renderer, const OpenedScene& opened, const Moment& moment, uint32_t seed,
                    uint32_t sample_count, Statistics& statistics)
 {
     while (sample_count > 0 && interruption() == 0)
@@ -13,7 +13,8 @@ bool renderSamples(Recorder& rec, Renderer& renderer, const OpenedScene& opened,
         rec.begin(opened.scene->descriptorSet());
         {
             const auto scope = rec.scope("frame");
-            renderer.record(rec, camera, opened.settings, seed, batch);
+            const Camera posed = opened.pose(rec, moment.seconds);
+            renderer.record(rec, moment.camera.value_or(posed), opened.settings, seed, batch);
         }
         if (statistics.frames.empty())
             statistics.first_submit_ms = statistics.elapsedMs();
@@ -37,6 +38,7 @@ Status playHeadless(const PlayerOptions& options)
     statistics.pipeline_ms = opened->device->pipelineMs();
     Recorder rec(*opened->device);
     const uint32_t sample_count = options.sample_count > 0 ? options.sample_count : std::max(options.frame_count, 1u);
-    renderSamples(rec, *renderer, *opened, opened->camera, options.seed, sample_count, statistics);
+    renderSamples(rec, *renderer, *opened, {.seconds = options.seconds.value_or(0)}, options.seed, sample_count,
+                  statistics);
     return writeResults(options, *opened, *renderer, opened->settings, statistics);
 }

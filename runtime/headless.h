@@ -6,6 +6,13 @@
 /// Prints a line for people on stderr; stdout stays for results.
 Status playHeadless(const PlayerOptions& options);
 
+/// What a picture shows.
+struct Moment
+{
+    double seconds = 0;           // of the animation
+    std::optional<Camera> camera; // none: the scene's selected one
+};
+
 /// Renders `sample_count` samples a pixel more. @return false where a signal that noteInterruptions() knows of came first
-bool renderSamples(Recorder& rec, Renderer& renderer, const OpenedScene& opened, const Camera& camera, uint32_t seed,
+bool renderSamples(Recorder& rec, Renderer& renderer, const OpenedScene& opened, const Moment& moment, uint32_t seed,
                    uint32_t sample_count, Statistics& statistics);

@@ -79,15 +79,13 @@ Status checkSequence(const PlayerOptions& options, const std::string& given)
     if (!options.path.empty() && !options.camera.empty())
         return usage("--path and --camera both say where the camera is; give one");
     if (!options.sequence && !given.empty())
-        return usage(fmt::format("{} is for sequences: --headless --path FILE --frames A-B", given));
+        return usage(fmt::format("{} is for sequences: --headless --frames A-B", given));
     if (options.headless && !options.sequence && !options.path.empty())
         return usage("--path with --headless needs the frames to render: --frames A-B");
     if (!options.sequence)
         return Success{};
     if (!options.headless)
         return usage("a range of --frames is rendered with --headless; in a window --frames is a count");
-    if (options.path.empty())
-        return usage("a range of --frames follows a camera path; give --path FILE, or a count");
     if (options.output.empty())
         return usage("a range of --frames needs files to go to: --output frame-%04d.exr or .png");
     const auto files = FrameFiles::parse(options.output);
@@ -142,7 +140,7 @@ int main(int argc, char** argv)
     app.add_flag("--headless", options.headless, "render without a window");
     app.add_option("--size", size, "picture size in pixels, WIDTHxHEIGHT")->capture_default_str();
     const CLI::Option* frames_option = app.add_option(
-        "--frames", frames, "how many to render (headless default 1; in a window: no end), or A-B along --path");
+        "--frames", frames, "how many to render (headless default 1; in a window: no end), or A-B, a sequence");
     app.add_option("--spp", options.sample_count, "samples a pixel to render, of a sequence in each frame")
         ->check(CLI::Range(1u, UINT32_MAX));
     app.add_option("--output", options.output,
@@ -155,7 +153,7 @@ int main(int argc, char** argv)
     app.add_option("--path", options.path,
                    "camera path (.json) to follow; in a window until a key or the mouse moves the camera");
     const CLI::Option* sequence_options[] = {
-        app.add_option("--fps", options.fps, "frames a second of the path, of a sequence")
+        app.add_option("--fps", options.fps, "frames a second of the path and the animation, of a sequence")
             ->check(CLI::Range(0.001, 1e6))
             ->capture_default_str(),
         app.add_flag("--force", options.force, "render frames of a sequence again that are there"),
@@ -165,6 +163,10 @@ int main(int argc, char** argv)
         ->check(CLI::IsMember({"gi", "direct", "reference"}))
         ->capture_default_str();
     app.add_option("--camera", options.camera, "camera by name or index; default the first");
+    app.add_option("--animation", options.animation,
+                   "what plays: a name, an index, all or none; default the first, of a single picture none");
+    app.add_option("--time", options.seconds, "seconds of the animation that a picture shows or a sequence begins at")
+        ->check(CLI::Range(0.0, 1e6));
     app.add_option("--seed", options.seed, "seed of all random numbers")->capture_default_str();
     app.add_option("--device", options.device, "index, part of a name, or cpu; default the best suitable one");
     app.add_flag("--list-devices", list_devices, "list Vulkan devices and what each one lacks");

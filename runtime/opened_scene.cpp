@@ -3,6 +3,7 @@
 #include "image/read_exr.h"
 #include "runtime/capture.h"
 
+#include <cmath>
 #include <future>
 
 namespace
@@ -89,12 +90,27 @@ Result<OpenedScene> openScene(const PlayerOptions& options, std::span<const char
                      fmt::format("of {}x{} pixels is too large to compare with on {}", against->width, against->height,
                                  device->name()),
                      options.against.string()};
-    const auto camera = chooseCamera(*package, options.camera);
+    const auto camera = chooseCamera(cameras, options.camera);
     if (!camera)
         return camera.error();
     auto scene = statistics.timed(statistics.upload_ms, [&] { return SceneGpu::create(*device, *package); });
     if (!scene)
         return scene.error();
+    std::unique_ptr<package::Package> kept;
+    std::unique_ptr<Animation> animation;
+    AnimationChoice plays;
+    if (package->motion() != nullptr)
+    {
+        kept = std::make_unique<package::Package>(std::move(*package));
+        animation = std::make_unique<Animation>(*device, **scene, *kept);
+        const bool single = options.headless && !options.sequence && !options.seconds; // a picture, at rest
+        const auto chosen = animation->choose(single && options.animation.empty() ? "none" : options.animation);
+        if (!chosen)
+            return chosen.error();
+        plays = *chosen;
+    }
+    else if (options.seconds || (!options.animation.empty() && options.animation != "none"))
+        return Error{ExitCode::kUsage, "nothing in the package moves; leave --animation and --time out"};
     const std::string preset = !options.preset.empty() ? options.preset : device->isCpu() ? "preview" : "default";
     const auto settings = makeSettings(preset, options.assignments);
     if (!settings)
@@ -103,11 +119,28 @@ Result<OpenedScene> openScene(const PlayerOptions& options, std::span<const char
     return OpenedScene{.instance = opened->instance,
                        .device = std::move(device),
                        .scene = std::move(*scene),
+                       .package = std::move(kept),
+                       .animation = std::move(animation),
+                       .plays = plays,
                        .cameras = std::move(cameras),
-                       .camera = *camera,
+                       .camera_index = *camera,
                        .path = std::move(*path),
                        .settings = *settings,
                        .against = std::move(*against)};
+}
+
+Camera OpenedScene::pose(Recorder& rec, double seconds) const
+{
+    if (!animation)
+        return camera();
+    animation->record(rec, plays, seconds);
+    return animation->posed(camera_index, camera());
+}
+
+double OpenedScene::animationTime(double seconds) const
+{
+    const double duration = animation ? animation->duration(plays) : 0;
+    return duration > 0 ? seconds - duration * std::floor(seconds / duration) : 0;
 }
 
 Status makeRenderer(std::optional<Renderer>& renderer, const OpenedScene& opened, Mode mode, uint32_t width,

@@ -1,5 +1,6 @@
 // What playing begins and ends with, in a window or without one: a package on a device, then results on the disk.
 #pragma once
+#include "runtime/animation.h"
 #include "runtime/camera_path.h"
 #include "runtime/player_options.h"
 #include "runtime/statistics.h"
@@ -22,11 +23,20 @@ struct OpenedScene
     Instance instance;
     std::unique_ptr<Device> device;
     std::unique_ptr<SceneGpu> scene;
-    std::vector<Camera> cameras;    // the package's, at least one
-    Camera camera;                  // the selected one
-    std::optional<CameraPath> path; // of --path
-    Settings settings;              // of the preset and --set
-    Rendering against;              // of --against
+    std::unique_ptr<package::Package> package; // where the animation needs it, else none
+    std::unique_ptr<Animation> animation;      // none: the package has no motion
+    AnimationChoice plays;                     // of --animation
+    std::vector<Camera> cameras;               // the package's, at least one
+    size_t camera_index = 0;                   // of the selected one
+    std::optional<CameraPath> path;            // of --path
+    Settings settings;                         // of the preset and --set
+    Rendering against;                         // of --against
+
+    const Camera& camera() const { return cameras[camera_index]; } // the selected one, at rest
+    /// What the scene and the selected camera are from the next kernel of `rec` on. @param seconds of the animation
+    Camera pose(Recorder& rec, double seconds) const;
+    /// Where the animation is after `seconds` of playing over and over.
+    double animationTime(double seconds) const;
 };
 
 /// Opens package, device, camera and path as `options` say.

@@ -24,7 +24,10 @@ struct PlayerOptions
     std::filesystem::path output;       // .exr or .png, of a sequence with a place for the number; empty: none
     std::vector<std::string> layers;    // of kLayerNames, that an .exr holds; empty: the picture alone
     Mode mode = Mode::kGi;
-    std::string camera; // name or index; empty: the first
+    std::string camera;    // name or index; empty: the first
+    std::string animation; // name, index, all or none; empty: the first where a time is shown
+    std::optional<double>
+        seconds; // of the animation, at the first frame; none: 0, and the pose at rest for a single picture
     uint32_t seed = 0;
     std::string device;
     std::filesystem::path stats;   // .json; empty: none

@@ -69,11 +69,11 @@ FrameInfo Renderer::beginFrame(Recorder& rec, const Camera& camera, const Settin
     FrameInfo frame{.camera = cameraParams(camera, width_, height_), .map_seed = seed, .number = frame_count_++};
     frame.camera.seed = seed;
     const bool goes_on = gi_ && goesOn(settings);
-    const bool lights_stand = last_lights_ == scene_.lightsVersion();
-    if (!last_camera_ || !lights_stand || !sameView(*last_camera_, frame.camera))
+    const bool scene_stands = last_scene_ == scene_.version();
+    if (!last_camera_ || !scene_stands || !sameView(*last_camera_, frame.camera))
     {
         resolve_.restart(rec);
-        if (lights_stand && went_on_ && goes_on)
+        if (scene_stands && went_on_ && goes_on)
             frame.previous = last_camera_;
         picture_seed_ =
             frame.previous ? traceSeed(seed, frame.number, 0) : seed; // means need other numbers in every frame
@@ -85,7 +85,7 @@ FrameInfo Renderer::beginFrame(Recorder& rec, const Camera& camera, const Settin
         frame.map_seed = picture_seed_;
     if (frame.previous && antialias_)
         frame.camera.jitter = jitterOf(frame.number);
-    last_lights_ = scene_.lightsVersion();
+    last_scene_ = scene_.version();
     const bool repeat = gi_ && showsOneFrame(settings.view); // a debug view stands still
     frame.accumulated = repeat ? 0 : resolve_.sampleCount();
     frame.camera.first_sample = frame.accumulated;

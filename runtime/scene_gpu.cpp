@@ -3,6 +3,7 @@
 #include "format/material.h"
 #include "runtime/texture_pages.h"
 #include "shaders/gather/harmonics.h"
+#include "shaders/pose/pose.h"
 #include "shaders/view_scale/view_scale.h"
 
 #include <algorithm>
@@ -18,6 +19,11 @@ gpu::vec3 toVec3(const lumicut::fb::Vec3& v)
     return {v.x(), v.y(), v.z()};
 }
 
+bool hasMovingTriangles(const package::Package& package)
+{
+    return package.firstMovingSlot() < package.bvhTriangles().size();
+}
+
 gpu::SceneInfo sceneInfo(const package::Package& package)
 {
     const auto& meta = package.meta();
@@ -31,6 +37,7 @@ gpu::SceneInfo sceneInfo(const package::Package& package)
         .caustic_target_count = uint32_t(package.causticTargets().size()),
         .triangle_count = uint32_t(package.triangles().size()),
         .environment_turn = 0,
+        .first_moving_slot = hasMovingTriangles(package) ? package.firstMovingSlot() : gpu::kNone,
     };
     if (!lights.empty() && lights.back().kind == gpu::kLightEnvironment)
     {
@@ -61,12 +68,27 @@ uint32_t materialFeatures(const gpu::Material& material)
     return features;
 }
 
+/// Whether some animation sets such a property.
+bool isAnimated(const package::Package& package, lumicut::fb::ChannelTarget target)
+{
+    if (package.motion() == nullptr)
+        return false;
+    return std::ranges::any_of(*package.motion()->clips(),
+                               [&](const auto* clip)
+                               {
+                                   return std::ranges::any_of(*clip->channels(), [&](const auto* channel)
+                                                              { return channel->target() == target; });
+                               });
+}
+
 uint32_t sceneFeatures(const package::Package& package)
 {
     uint32_t features =
         (package.meta().has_alpha() ? gpu::kFeatureAlpha : 0u) | (package.meta().has_thin() ? gpu::kFeatureThin : 0u);
     for (const gpu::Material& material : package.materials())
         features |= materialFeatures(material);
+    if (isAnimated(package, lumicut::fb::ChannelTarget::MaterialMetallic))
+        features |= gpu::kFeatureMetal | gpu::kFeatureSpecular;
     if (std::ranges::any_of(package.textureRefs(),
                             [](const gpu::TextureRef& ref) { return (ref.sampling & gpu::kSampleUv1) != 0; }))
         features |= gpu::kFeatureSecondUv;
@@ -81,6 +103,17 @@ uint32_t sceneFeatures(const package::Package& package)
                                                          : gpu::kFeaturePunctualLights;
     return features;
 }
+/// Of the moving triangles as they are at rest; one at least.
+std::vector<gpu::TriangleCorners> movingCorners(const package::Package& package)
+{
+    std::vector<gpu::TriangleCorners> corners;
+    if (hasMovingTriangles(package))
+        for (const gpu::BvhTriangle& t : package.bvhTriangles().subspan(package.firstMovingSlot()))
+            corners.push_back({t.v0, t.v1, t.v2});
+    corners.resize(std::max<size_t>(corners.size(), 1));
+    return corners;
+}
+
 gpu::ViewScale wholeScene(const gpu::SceneInfo& info)
 {
     const gpu::vec3 low = info.bounds_min, high = info.bounds_max;
@@ -141,11 +174,14 @@ Result<std::unique_ptr<SceneGpu>> SceneGpu::create(const Device& device, const p
     const gpu::ViewScale whole = wholeScene(scene->info_); // until a picture is drawn
     scene->buffers_.push_back(device.upload("scene.view_scale", std::span(&whole, 1)));
     scene->info_buffer_ = device.upload("scene.info", std::span<const gpu::SceneInfo>(&scene->info_, 1));
+    const std::vector<gpu::TriangleCorners> corners = movingCorners(package);
+    scene->last_corners_ = device.upload<gpu::TriangleCorners>("scene.last_corners", corners);
     scene->features_ = sceneFeatures(package);
     scene->constants_ = {
         {{"kSceneFeatures", scene->features_}, {"kUsedTexturePages", package.meta().texture_pages()->size()}}};
-    scene->reflects_roughly_ = std::ranges::any_of(package.materials(), isRough);
-    scene->has_smooth_layers_ = std::ranges::any_of(package.materials(), hasSmoothLayer);
+    const bool any_roughness = isAnimated(package, lumicut::fb::ChannelTarget::MaterialRoughness);
+    scene->reflects_roughly_ = any_roughness || std::ranges::any_of(package.materials(), isRough);
+    scene->has_smooth_layers_ = any_roughness || std::ranges::any_of(package.materials(), hasSmoothLayer);
     scene->createImages(package);
     scene->createDescriptorSet();
     return scene;
@@ -162,9 +198,17 @@ SceneGpu::~SceneGpu()
 void SceneGpu::setLight(Recorder& rec, uint32_t index, const gpu::Light& light)
 {
     check(index < info_.light_count, "light {} of {}", index, info_.light_count);
-    ++lights_version_;
+    ++version_.lights;
     rec.write(buffers_[gpu::kLightsBinding - gpu::kBvhNodesBinding], index * sizeof(light),
               std::as_bytes(std::span(&light, 1)));
+}
+
+void SceneGpu::setLightEmission(Recorder& rec, uint32_t index, gpu::vec3 emission)
+{
+    check(index < info_.light_count, "light {} of {}", index, info_.light_count);
+    ++version_.lights;
+    rec.write(buffer(gpu::kLightsBinding), index * sizeof(gpu::Light) + offsetof(gpu::Light, emission),
+              std::as_bytes(std::span(&emission, 1)));
 }
 
 void SceneGpu::setEmission(Recorder& rec, uint32_t index, gpu::vec3 emission)
@@ -172,9 +216,18 @@ void SceneGpu::setEmission(Recorder& rec, uint32_t index, gpu::vec3 emission)
     const Buffer& materials = buffers_[gpu::kMaterialsBinding - gpu::kBvhNodesBinding];
     check((index + 1) * sizeof(gpu::Material) <= materials.size(), "material {} of {} bytes of them", index,
           materials.size());
-    ++lights_version_;
+    ++version_.lights;
     rec.write(materials, index * sizeof(gpu::Material) + offsetof(gpu::Material, emission),
               std::as_bytes(std::span(&emission, 1)));
+}
+
+void SceneGpu::setMaterial(Recorder& rec, uint32_t index, const gpu::Material& material)
+{
+    const Buffer& materials = buffer(gpu::kMaterialsBinding);
+    check((index + 1) * sizeof(material) <= materials.size(), "material {} of {} bytes of them", index,
+          materials.size());
+    ++version_.lights;
+    rec.write(materials, index * sizeof(material), std::as_bytes(std::span(&material, 1)));
 }
 
 void SceneGpu::createImages(const package::Package& package)

@@ -17,6 +17,14 @@ struct LightProbability // of the scene's power
     bool isPunctual() const { return kind < gpu::kLightTriangle; }
 };
 
+/// Each grows when something of the scene changes: what was made under another version is out of date.
+struct SceneVersion
+{
+    uint64_t geometry = 0;
+    uint64_t lights = 0; // and materials
+    bool operator==(const SceneVersion&) const = default;
+};
+
 class SceneGpu
 {
 public:
@@ -39,13 +47,24 @@ public:
     bool hasSmoothLayers() const { return has_smooth_layers_; }
     /// Replaces light `index` from the next kernel of `rec` on; with the kind and pmf it has, on which other tables rest.
     void setLight(Recorder& rec, uint32_t index, const gpu::Light& light);
+    /// Replaces what light `index` emits, Light.emission, from the next kernel of `rec` on.
+    void setLightEmission(Recorder& rec, uint32_t index, gpu::vec3 emission);
     /// Replaces what material `index` emits, W/(m^2 sr) before its texture, from the next kernel of `rec` on. Of a surface
     /// whose triangles are lights those are to be replaced too.
     void setEmission(Recorder& rec, uint32_t index, gpu::vec3 emission);
     /// gpu::ViewScale, which every kernel can read: of the whole scene until a ViewScaleStage sets it.
     const Buffer& viewScale() const { return buffers_.back(); }
-    /// Grows whenever a light or an emission is replaced: what was made under another version is out of date.
-    uint64_t lightsVersion() const { return lights_version_; }
+    /// Replaces material `index`, with the textures and flags it has, from the next kernel of `rec` on.
+    void setMaterial(Recorder& rec, uint32_t index, const gpu::Material& material);
+    /// Geometry has been moved: vertices, triangles and boxes in the buffers of the scene.
+    void noteMove() { ++version_.geometry; }
+    SceneVersion version() const { return version_; }
+    /// A buffer of descriptor set 0, by its binding.
+    const Buffer& buffer(uint32_t binding) const { return *bound_[binding]; }
+    /// Where moving triangles were in the frame before, gpu::TriangleCorners[] from info().first_moving_slot on.
+    const Buffer& lastCorners() const { return last_corners_; }
+    /// Some of its geometry can move.
+    bool canMove() const { return info_.first_moving_slot != gpu::kNone; }
     /// By light index.
     std::span<const LightProbability> lightProbabilities() const { return light_probabilities_; }
     /// Some light has an extent, so that a ray may find it: an emissive triangle or an environment.
@@ -59,12 +78,13 @@ private:
     const Device& device_;
     gpu::SceneInfo info_{};
     std::vector<LightProbability> light_probabilities_;
-    uint64_t lights_version_ = 0;
+    SceneVersion version_;
     uint32_t features_ = 0; // kFeature*
     std::array<Constant, 2> constants_{};
     bool reflects_roughly_ = false;
     bool has_smooth_layers_ = false;
     Buffer info_buffer_;
+    Buffer last_corners_;
     std::vector<Buffer> buffers_;      // by binding, kBvhNodesBinding first
     std::vector<const Buffer*> bound_; // by binding
     std::vector<Image>

@@ -60,8 +60,10 @@ Status Sequence::begin()
 
 Status Sequence::renderSamples(int64_t frame, uint32_t sample_count)
 {
-    const Camera camera = opened_.path->at(double(frame) / options_.fps);
-    if (::renderSamples(rec_, *renderer_, opened_, camera, frameSeed(options_.seed, frame), sample_count, statistics_))
+    const double seconds = double(frame) / options_.fps;
+    const Moment moment{.seconds = opened_.animationTime(options_.seconds.value_or(0) + seconds),
+                        .camera = opened_.path ? std::optional(opened_.path->at(seconds)) : std::nullopt};
+    if (::renderSamples(rec_, *renderer_, opened_, moment, frameSeed(options_.seed, frame), sample_count, statistics_))
         return Success{};
     return Error{ExitCode(128 + interruption()),
                  fmt::format("ended by a signal ({}) with {} of {} frames written; the same command renders the others",
@@ -183,5 +185,9 @@ Status playSequence(const PlayerOptions& options)
     const auto opened = openScene(options, {}, statistics);
     if (!opened)
         return opened.error();
+    if (!opened->path && !opened->animation)
+        return Error{ExitCode::kUsage,
+                     "nothing in the package moves, so a range of --frames needs a camera path: --path "
+                     "FILE, or a count of frames"};
     return renderFrames(options, *opened, *files, *frames, statistics);
 }

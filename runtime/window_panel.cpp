@@ -2,6 +2,8 @@
 
 #include <imgui.h>
 
+#include <algorithm>
+
 namespace
 {
 void text(const std::string& line)
@@ -90,9 +92,60 @@ bool editSettings(Settings& settings)
     ImGui::PopItemWidth();
     return restart;
 }
+
+std::string nameOf(AnimationChoice choice, std::span<const std::string> clips)
+{
+    using What = AnimationChoice::What;
+    return choice.what == What::kClip ? clips[choice.clip] : choice.what == What::kAll ? "all" : "none";
+}
+
+void chooseAnimation(std::span<const std::string> clips, Playback& playback)
+{
+    using What = AnimationChoice::What;
+    if (!ImGui::BeginCombo("animation", nameOf(playback.choice, clips).c_str()))
+        return;
+    const auto offer = [&](AnimationChoice choice)
+    {
+        const std::string label = fmt::format("{}##{}-{}", nameOf(choice, clips), int(choice.what), choice.clip);
+        if (!ImGui::Selectable(label.c_str(), playback.choice == choice))
+            return;
+        playback.choice = choice;
+        playback.seconds = 0;
+    };
+    for (uint32_t clip = 0; clip < clips.size(); ++clip)
+        offer({What::kClip, clip});
+    offer({What::kAll});
+    offer({What::kNone});
+    ImGui::EndCombo();
+}
+
+void editPlayback(const PanelFacts& facts, Playback& playback)
+{
+    constexpr double kStep = 1 / 30.0; // seconds
+    ImGui::PushItemWidth(ImGui::GetFontSize() * 10);
+    chooseAnimation(facts.clips, playback);
+    if (ImGui::Button(playback.plays ? "pause" : "play"))
+        playback.plays = !playback.plays;
+    for (const auto& [label, step] : {std::pair{"<", -kStep}, std::pair{">", kStep}})
+    {
+        ImGui::SameLine();
+        if (ImGui::Button(label))
+        {
+            playback.plays = false;
+            playback.seconds = std::clamp(playback.seconds + step, 0.0, facts.duration);
+        }
+    }
+    ImGui::SameLine();
+    ImGui::Checkbox("loop", &playback.loops);
+    float seconds = float(playback.seconds);
+    if (ImGui::SliderFloat("seconds", &seconds, 0, float(facts.duration), "%.3f", ImGuiSliderFlags_AlwaysClamp))
+        playback.seconds = seconds;
+    ImGui::SliderFloat("speed", &playback.speed, 0.05f, 8, "%.2f x", ImGuiSliderFlags_Logarithmic);
+    ImGui::PopItemWidth();
+}
 } // namespace
 
-PanelActions drawPanel(const PanelFacts& facts, Settings& settings, Mode& mode)
+PanelActions drawPanel(const PanelFacts& facts, Settings& settings, Mode& mode, Playback& playback)
 {
     PanelActions actions;
     ImGui::SetNextWindowPos({8, 8}); // fixed: a window made small for a moment must not push it out
@@ -104,12 +157,18 @@ PanelActions drawPanel(const PanelFacts& facts, Settings& settings, Mode& mode)
     ImGui::Separator();
     chooseMode(mode);
     actions.restart = editSettings(settings);
+    if (!facts.clips.empty())
+    {
+        ImGui::Separator();
+        editPlayback(facts, playback);
+    }
     ImGui::Separator();
     actions.camera = chooseCamera(facts.cameras);
     ImGui::Separator();
-    text(fmt::format("WASD QE fly at {:.3g} m/s (wheel, Shift)\n"
-                     "drag looks, 1-9 cameras\nR records a path\nF1 panel, F12 screenshot, Esc quits",
-                     facts.speed));
+    text(fmt::format(
+        "WASD QE fly at {:.3g} m/s (wheel, Shift)\n"
+        "drag looks, 1-9 cameras\nR records a path, Space pauses animations\nF1 panel, F12 screenshot, Esc quits",
+        facts.speed));
     if (!facts.notice.empty())
         text(std::string(facts.notice));
     ImGui::End();

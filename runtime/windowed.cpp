@@ -43,8 +43,12 @@ public:
         : options_(options), settings_(opened.settings), window_(window), opened_(opened),
           swapchain_(swapchain), flights_{Flight(*opened.device), Flight(*opened.device)},
           overlay_(window, opened.instance, *opened.device, swapchain, flights_[0].rec),
-          fly_(opened.camera, sceneSize(*opened.scene)), follows_path_(opened.path.has_value())
+          fly_(opened.camera(), sceneSize(*opened.scene)), follows_path_(opened.path.has_value())
     {
+        playback_.choice = opened.plays;
+        playback_.seconds = options.seconds.value_or(0);
+        if (opened.animation)
+            followed_camera_ = opened.camera_index;
     }
 
     Status play(Statistics& statistics);
@@ -54,7 +58,9 @@ private:
     void useKeys();
     void saveScreenshot();
     void toggleRecording();
-    void jump(const Camera& camera);
+    void jump(size_t camera);
+    void showMoment(Recorder& rec);
+    double duration() const { return opened_.animation ? opened_.animation->duration(playback_.choice) : 0; }
     void moveCamera(float seconds);
     void usePanel();
     struct Flight // a frame that the GPU may still be at
@@ -79,6 +85,8 @@ private:
     FlyCamera fly_;
     bool follows_path_;
     double path_seconds_ = 0; // since its start
+    Playback playback_;
+    std::optional<size_t> followed_camera_; // of the package, as the animation moves it; none: it is flown by hand
     std::optional<PathRecorder> recorder_;
     std::optional<Renderer> renderer_;
     std::vector<StageTime> stages_;
@@ -133,10 +141,22 @@ void WindowedPlayer::toggleRecording()
     fmt::print(stderr, "{}\n", notice_);
 }
 
-void WindowedPlayer::jump(const Camera& camera)
+void WindowedPlayer::jump(size_t camera)
 {
     follows_path_ = false;
-    fly_.jump(camera);
+    fly_.jump(opened_.cameras[camera]);
+    if (opened_.animation)
+        followed_camera_ = camera;
+}
+
+/// The scene as it is now, and the camera that moves with it.
+void WindowedPlayer::showMoment(Recorder& rec)
+{
+    if (!opened_.animation)
+        return;
+    opened_.animation->record(rec, playback_.choice, playback_.seconds);
+    if (followed_camera_ && !follows_path_)
+        fly_.jump(opened_.animation->posed(*followed_camera_, opened_.cameras[*followed_camera_]));
 }
 
 /// Along the path, over and over, until the person takes the camera; then by hand.
@@ -144,6 +164,8 @@ void WindowedPlayer::moveCamera(float seconds)
 {
     const FlyInput input = window_.takeFlyInput(!overlay_.wantsKeyboard(), !overlay_.wantsMouse());
     follows_path_ &= !input.moves();
+    if (input.moves())
+        followed_camera_.reset();
     if (follows_path_)
     {
         const CameraPath& path = *opened_.path;
@@ -168,10 +190,12 @@ void WindowedPlayer::useKeys()
             panel_ = !panel_;
         else if (key == GLFW_KEY_F12)
             saveScreenshot();
+        else if (key == GLFW_KEY_SPACE)
+            playback_.plays = !playback_.plays;
         else if (key == GLFW_KEY_R)
             toggleRecording();
         else if (key >= GLFW_KEY_1 && key <= GLFW_KEY_9 && size_t(key - GLFW_KEY_1) < opened_.cameras.size())
-            jump(opened_.cameras[size_t(key - GLFW_KEY_1)]);
+            jump(size_t(key - GLFW_KEY_1));
     }
 }
 
@@ -182,6 +206,7 @@ void WindowedPlayer::usePanel()
     const Mode mode = options_.mode;
     const Settings settings = settings_;
     const std::string device = opened_.device->name();
+    const auto clips = opened_.animation ? std::span(opened_.animation->names()) : std::span<const std::string>();
     const PanelActions actions = drawPanel({.device = device,
                                             .width = renderer_->width(),
                                             .height = renderer_->height(),
@@ -190,15 +215,17 @@ void WindowedPlayer::usePanel()
                                             .stages = stages_,
                                             .cameras = opened_.cameras,
                                             .speed = fly_.speed(),
+                                            .clips = clips,
+                                            .duration = duration(),
                                             .notice = notice_},
-                                           settings_, options_.mode);
+                                           settings_, options_.mode, playback_);
     if (settings_.view == gpu::kViewError && opened_.against.pixels.empty())
     {
         settings_.view = settings.view;
         notice_ = kNothingToCompareWith;
     }
     if (actions.camera)
-        jump(opened_.cameras[*actions.camera]);
+        jump(*actions.camera);
     const bool counts_changed = actions.restart && options_.mode == Mode::kGi; // they decide how much is allocated
     if (options_.mode == mode && !counts_changed && actions.restart)
         renderer_->restart();
@@ -220,6 +247,7 @@ void WindowedPlayer::showFrame(Statistics& statistics)
     rec.begin(opened_.scene->descriptorSet());
     {
         const auto scope = rec.scope("frame");
+        showMoment(rec);
         renderer_->record(rec, fly_.camera(), settings_, options_.seed, renderer_->maxBatch());
         const Buffer& pixels = renderer_->display(rec, settings_, swapchain_.bgra());
         const auto shown = rec.scope("show");
@@ -277,6 +305,7 @@ Status WindowedPlayer::play(Statistics& statistics)
         usePanel();
         // A slow frame must not throw the camera across the scene.
         moveCamera(std::min(seconds, 0.25f));
+        playback_.advance(seconds, duration());
         showFrame(statistics);
         ++frames;
     }

@@ -23,7 +23,9 @@ void HistoryStage::record(Recorder& rec, const Input& in)
                                     .has_previous = in.frame.previous.has_value(),
                                     .seed = traceSeed(camera.seed, in.frame.number, 0),
                                     .pixel_angle = camera.orthographic ? 0 : pixelSide(camera),
-                                    .pixel_side = camera.orthographic ? pixelSide(camera) : 0};
+                                    .pixel_side = camera.orthographic ? pixelSide(camera) : 0,
+                                    .moves = in.signals.displacements.size() >=
+                                             camera.width * camera.height * sizeof(gpu::vec3)};
     rec.run(blend_, params.point_count, params,
             {{"Motions", in.signals.motions},
              {"Guides", in.signals.guides},
@@ -34,7 +36,8 @@ void HistoryStage::record(Recorder& rec, const Input& in)
              {"GlossySignals", in.signals.glossy},
              {"DiffusePoints", in.surface.diffuse_points},
              {"Indirect", in.light.indirect},
-             {"Caustics", in.light.caustics}});
+             {"Caustics", in.light.caustics},
+             {"Displacements", in.signals.displacements}});
 }
 
 double HistoryStage::rememberedShare(const Device& device, uint32_t point_count) const

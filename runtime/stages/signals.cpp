@@ -4,11 +4,12 @@
 #include "runtime/stages/primary.h"
 
 SignalsStage::SignalsStage(const Device& device, const SceneGpu& scene, uint32_t max_pixels)
-    : prepare_(device.kernel("signals/prepare", scene.constants())), apply_(device.kernel("signals/apply")),
-      views_(device.array<gpu::FrameViews>("signals.views", 1)),
+    : scene_(scene), prepare_(device.kernel("signals/prepare", scene.constants())),
+      apply_(device.kernel("signals/apply")), views_(device.array<gpu::FrameViews>("signals.views", 1)),
       motions_(device.array<gpu::Motion>("signals.motions", max_pixels)),
       direct_(device.texelArray<gpu::LightSignal>("signals.direct", max_pixels)),
       glossy_(device.texelArray<gpu::LightSignal>("signals.glossy", max_pixels)),
+      displacements_(device.array<gpu::vec3>("signals.displacements", scene.canMove() ? max_pixels : 1)),
       guides_{device.texelArray<gpu::SurfaceGuide>("signals.guides_a", max_pixels),
               device.texelArray<gpu::SurfaceGuide>("signals.guides_b", max_pixels)}
 {
@@ -33,10 +34,13 @@ SignalBuffers SignalsStage::record(Recorder& rec, const FrameInfo& frame, const 
              {"Guides", guides_[now_]},
              {"Motions", motions_},
              {"DirectSignals", direct_},
-             {"GlossySignals", glossy_}});
+             {"GlossySignals", glossy_},
+             {"LastCorners", scene_.lastCorners()},
+             {"Displacements", displacements_}});
     return {.guides = guides_[now_],
             .last_guides = guides_[1 - now_],
             .motions = motions_,
+            .displacements = displacements_,
             .direct = direct_,
             .glossy = glossy_};
 }

@@ -8,11 +8,12 @@
 
 struct SignalBuffers
 {
-    const Buffer& guides;      // gpu::SurfaceGuide[pixel_count], with a texel view
-    const Buffer& last_guides; // the same of the last record()
-    const Buffer& motions;     // gpu::Motion[pixel_count]
-    const Buffer& direct;      // gpu::LightSignal[pixel_count], with a texel view
-    const Buffer& glossy;      // likewise
+    const Buffer& guides;        // gpu::SurfaceGuide[pixel_count], with a texel view
+    const Buffer& last_guides;   // the same of the last record()
+    const Buffer& motions;       // gpu::Motion[pixel_count]
+    const Buffer& displacements; // vec3[pixel_count], metres that surfaces have moved by since; one where none can move
+    const Buffer& direct;        // gpu::LightSignal[pixel_count], with a texel view
+    const Buffer& glossy;        // likewise
 };
 
 class SignalsStage
@@ -30,8 +31,9 @@ public:
     const Buffer& motions() const { return motions_; } // of the last record()
 
 private:
+    const SceneGpu& scene_;
     Kernel prepare_, apply_;
-    Buffer views_, motions_, direct_, glossy_;
+    Buffer views_, motions_, direct_, glossy_, displacements_;
     std::array<Buffer, 2> guides_;
     uint32_t now_ = 0; // of guides_
 };

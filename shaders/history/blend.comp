@@ -21,6 +21,7 @@ layout(set = 1, binding = 6, scalar) buffer GlossySignals { uvec4 glossy_signals
 layout(set = 1, binding = 7, scalar) readonly buffer DiffusePoints { DiffusePoint diffuse_points[]; };
 layout(set = 1, binding = 8, scalar) buffer Indirect { vec3 indirect[]; };
 layout(set = 1, binding = 9, scalar) buffer Caustics { vec3 caustics[]; };
+layout(set = 1, binding = 10, scalar) readonly buffer Displacements { vec3 displacements[]; };
 
 const float kOffPlane = 2.0;   // pixels, off the surface's plane, at which another pixel's surface is another one
 const float kFarAlong = 32.0;  // pixels, along it: what a pixel covers of a surface seen at 2 degrees
@@ -82,6 +83,8 @@ Past recall(uint pixel)
     ivec2 corner = ivec2(floor(at));
     vec2 part = at - vec2(corner);
     SurfaceGuide guide = guides[pixel];
+    if (params.moves != 0u)
+        guide.position -= displacements[pixel]; // where it was
     vec3 normal = octahedralToUnit(unpackSnorm4x8(guide.normals).xy);
     float footprint = params.pixel_side + params.pixel_angle * motion.distance;
     for (int k = 0; k < 4; ++k)

@@ -31,8 +31,9 @@ struct HistoryParams
     uint seed;         // of rounding
     float pixel_angle; // radians from a pixel to the next; of an orthographic camera 0
     float pixel_side;  // metres, of an orthographic camera; else 0
+    uint moves;        // 1: surfaces can move; Displacements holds one a pixel
 };
-GPU_SIZE(HistoryParams, 28);
+GPU_SIZE(HistoryParams, 32);
 
 GPU_NAMESPACE_END
 #endif

@@ -112,7 +112,7 @@ TEST_F(RememberingSequence, HasTheSameBytesInPieces)
     std::optional<Renderer> renderer;
     ASSERT_TRUE(makeRenderer(renderer, *opened_, Mode::kGi, options_.width, options_.height, opened_->settings));
     Recorder rec(*opened_->device);
-    EXPECT_TRUE(renderSamples(rec, *renderer, *opened_, opened_->camera, 0, 2, statistics_));
+    EXPECT_TRUE(renderSamples(rec, *renderer, *opened_, Moment{}, 0, 2, statistics_));
     ASSERT_TRUE(
         capture(folder_ / "still/picture.exr", *renderer, *opened_->device, *opened_->scene, opened_->settings));
     EXPECT_EQ(frame("still", "f00.exr"), frame("still", "picture.exr"));
@@ -147,7 +147,7 @@ TEST_F(RememberingSequence, LayersAddUpToThePicture)
     for (uint32_t frames = 1; frames <= 2; ++frames)
     {
         rec.begin(opened_->scene->descriptorSet());
-        renderer->record(rec, opened_->camera, settings, 7);
+        renderer->record(rec, opened_->camera(), settings, 7);
         rec.submitAndWait();
         ASSERT_EQ(renderer->sampleCount(), frames);
         const std::vector<gpu::vec3> picture = renderer->picture(*opened_->device);

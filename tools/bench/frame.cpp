@@ -1,5 +1,6 @@
 #include "tools/bench/frame.h"
 
+#include "runtime/animation.h"
 #include "runtime/renderer.h"
 #include "tools/bench/paths.h"
 #include "tools/bench/rays.h"
@@ -7,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include <chrono>
+#include <cmath>
 #include <optional>
 
 namespace
@@ -45,7 +47,36 @@ double since(std::chrono::steady_clock::time_point start)
     return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 }
 
-Measurement measure(const OpenedPackage& opened, const FrameBenchOptions& options)
+/// What plays; nothing where no animation is asked for.
+struct Player
+{
+    std::optional<Animation> animation;
+    AnimationChoice choice;
+
+    void record(Recorder& rec, uint32_t frame)
+    {
+        constexpr double kFramesPerSecond = 60;
+        if (const double duration = animation ? animation->duration(choice) : 0; duration > 0)
+            animation->record(rec, choice, std::fmod(frame / kFramesPerSecond, duration));
+    }
+};
+
+Result<std::unique_ptr<Player>> makePlayer(const OpenedPackage& opened, const FrameBenchOptions& options)
+{
+    auto player = std::make_unique<Player>();
+    if (options.animation.empty())
+        return player;
+    if (opened.package.motion() == nullptr)
+        return Error{ExitCode::kUsage, "nothing in the package moves; leave --animation out"};
+    player->animation.emplace(*opened.device, *opened.scene, opened.package);
+    const auto choice = player->animation->choose(options.animation);
+    if (!choice)
+        return choice.error();
+    player->choice = *choice;
+    return player;
+}
+
+Measurement measure(const OpenedPackage& opened, Player& player, const FrameBenchOptions& options)
 {
     const Mode mode = options.mode == "gi" ? Mode::kGi : options.mode == "direct" ? Mode::kDirect : Mode::kReference;
     SceneGpu& scene = *opened.scene;
@@ -64,6 +95,7 @@ Measurement measure(const OpenedPackage& opened, const FrameBenchOptions& option
     {
         rec.begin(scene.descriptorSet());
         const auto scope = rec.scope("frame");
+        player.record(rec, frame);
         if (light)
             scene.setLight(rec, light->index, movedLight(light->light, scene.info(), int32_t(frame)));
         renderer.record(rec, camera_moves ? movedCamera(opened.camera, scene.info(), float(frame)) : opened.camera,
@@ -186,7 +218,10 @@ Status benchFrame(const FrameBenchOptions& options)
         measureRays(*opened->device, *opened->scene, opened->camera, options.width, options.height, kRepeats);
     if (!throughput)
         return throughput.error();
-    const Measurement result = measure(*opened, options);
+    const auto player = makePlayer(*opened, options);
+    if (!player)
+        return player.error();
+    const Measurement result = measure(*opened, **player, options);
     (options.json ? printJson : print)(options, *opened, result, *throughput);
     return Success{};
 }

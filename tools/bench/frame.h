@@ -9,6 +9,7 @@ struct FrameBenchOptions : BenchOptions
     uint32_t frames = 120;       // timed
     uint32_t warm_up = 8;        // before them
     std::string moving = "both"; // camera, lights, both, nothing
+    std::string animation;       // that plays, 60 frames a second; empty: none
     Settings settings;
 };
 

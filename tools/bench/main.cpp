@@ -70,6 +70,8 @@ void addPackageCommands(CLI::App& app, CommandLine& line)
     frame->add_option("--warm-up", line.frame.warm_up, "frames before them")
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
+    frame->add_option("--animation", line.frame.animation,
+                      "that plays meanwhile: a name, an index or all; default none");
     frame->add_option("--moving", line.frame.moving, "what moves from frame to frame")
         ->check(CLI::IsMember({"both", "camera", "lights", "nothing"}))
         ->capture_default_str();

@@ -9,7 +9,8 @@ Result<OpenedPackage> openPackage(const BenchOptions& options)
     auto package = package::Package::open(options.package);
     if (!package)
         return package.error();
-    const auto camera = chooseCamera(*package, options.camera);
+    const std::vector<Camera> cameras = packageCameras(*package);
+    const auto camera = chooseCamera(cameras, options.camera);
     if (!camera)
         return camera.error();
     const auto instance = Instance::create({});
@@ -24,8 +25,10 @@ Result<OpenedPackage> openPackage(const BenchOptions& options)
     auto scene = SceneGpu::create(**device, *package);
     if (!scene)
         return scene.error();
-    return OpenedPackage{
-        .package = std::move(*package), .device = std::move(*device), .scene = std::move(*scene), .camera = *camera};
+    return OpenedPackage{.package = std::move(*package),
+                         .device = std::move(*device),
+                         .scene = std::move(*scene),
+                         .camera = cameras[*camera]};
 }
 
 ImageF pictureOf(const Renderer& renderer, const Device& device)

@@ -1,0 +1,231 @@
+#include "runtime/stages/pose.h"
+
+#include "runtime/stages/tree.h"
+
+#include <algorithm>
+#include <cstring>
+
+namespace
+{
+template <typename T>
+Buffer uploadOrOne(const Device& device, std::string_view name, std::span<const T> data)
+{
+    const T none{};
+    return device.upload(name, data.empty() ? std::span<const T>(&none, 1) : data);
+}
+
+/// The moving part of a hierarchy: what its leaves and nodes hang on.
+struct MovingTree
+{
+    std::vector<gpu::PosedLeaf> leaves;
+    std::vector<uint32_t> parents; // by moving node; that of node 0 is never read
+};
+
+MovingTree movingTree(const package::Package& package)
+{
+    const auto nodes = package.bvhNodes();
+    const uint32_t first = package.firstMovingNode();
+    MovingTree tree{.leaves = {}, .parents = std::vector<uint32_t>(nodes.size() - first)};
+    for (uint32_t node = 0; node < nodes.size(); ++node)
+    {
+        if (node > 0 && node < first) // the root alone of those before may have moving children
+            node = first;
+        if (node >= nodes.size())
+            break;
+        const std::array children{nodes[node].child.x, nodes[node].child.y, nodes[node].child.z, nodes[node].child.w};
+        for (uint32_t i = 0; i < gpu::kBvhWidth; ++i)
+        {
+            const uint32_t link = gpu::kBvhWidth * node + i;
+            if (children[i] == gpu::kNone)
+                continue;
+            if ((children[i] & gpu::kLeafBit) == 0)
+            {
+                if (children[i] >= first)
+                    tree.parents[children[i] - first] = link;
+            }
+            else if ((children[i] & gpu::kLeafFirstMask) >= package.firstMovingSlot())
+                tree.leaves.push_back({link, children[i]});
+        }
+    }
+    return tree;
+}
+
+std::vector<gpu::PosedEmitter> movingEmitters(const package::Package& package)
+{
+    std::vector<gpu::PosedEmitter> emitters;
+    const auto slots = package.bvhTriangles();
+    for (uint32_t slot = package.firstMovingSlot(); slot < slots.size(); ++slot)
+        if (const uint32_t light = package.triangles()[slots[slot].triangle].light; light != gpu::kNone)
+            emitters.push_back({light, slot});
+    return emitters;
+}
+
+std::vector<gpu::PosedTarget> movingTargets(const package::Package& package)
+{
+    std::vector<gpu::PosedTarget> targets;
+    const auto* objects = package.motion()->objects();
+    for (uint32_t i = 0; i < objects->size(); ++i)
+        if (const int32_t target = objects->Get(i)->caustic_target(); target >= 0)
+            targets.push_back({uint32_t(target), package.movingRanges()[i].root_node});
+    return targets;
+}
+
+std::vector<std::vector<uint32_t>> emittersByMaterial(const package::Package& package)
+{
+    std::vector<std::vector<uint32_t>> lights(package.materials().size());
+    std::vector<bool> seen(package.lights().size()); // spatial splits store a triangle in several slots
+    for (const gpu::BvhTriangle& t : package.bvhTriangles())
+        if (const uint32_t light = package.triangles()[t.triangle].light; light != gpu::kNone && !seen[light])
+        {
+            seen[light] = true;
+            lights[t.material].push_back(light);
+        }
+    return lights;
+}
+
+bool sameBytes(const auto& a, const auto& b)
+{
+    return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(a[0])) == 0);
+}
+
+bool sameGeometry(const package::Pose& a, const package::Pose& b)
+{
+    return sameBytes(a.bones, b.bones) && sameBytes(a.weights, b.weights);
+}
+
+void writeAll(Recorder& rec, const Buffer& to, std::span<const std::byte> bytes)
+{
+    constexpr size_t kMost = 65536; // of one write
+    for (size_t first = 0; first < bytes.size(); first += kMost)
+        rec.write(to, first, bytes.subspan(first, std::min(kMost, bytes.size() - first)));
+}
+} // namespace
+
+PoseStage::PoseStage(const Device& device, SceneGpu& scene, const package::Package& package)
+    : scene_(scene), deform_(device.kernel("pose/deform")),
+      refit_(device.kernel("pose/refit", {climbConstant(device)})), follow_(device.kernel("pose/follow"))
+{
+    const auto* motion = package.motion();
+    check(motion != nullptr, "a package without motion has no poses");
+    std::vector<gpu::MovingVertex> vertices(package.movingVertices().begin(), package.movingVertices().end());
+    vertices.push_back({.first_influence = uint32_t(package.influences().size()),
+                        .first_morph = uint32_t(package.morphOffsets().size())});
+    vertices_ = device.upload<gpu::MovingVertex>("pose.vertices", vertices);
+    influences_ = uploadOrOne(device, "pose.influences", package.influences());
+    morphs_ = uploadOrOne(device, "pose.morphs", package.morphOffsets());
+    bones_ = device.array<gpu::BoneMatrix>("pose.bones", motion->bones()->size());
+    weights_ = device.array<float>("pose.weights", motion->weights()->size());
+    positions_ = device.array<gpu::vec3>("pose.positions", vertices.size() - 1);
+    const MovingTree tree = movingTree(package);
+    leaves_ = uploadOrOne<gpu::PosedLeaf>(device, "pose.leaves", tree.leaves);
+    parents_ = uploadOrOne<uint32_t>(device, "pose.parents", tree.parents);
+    arrivals_ = device.array<uint32_t>("pose.arrivals", tree.parents.size());
+    const auto emitters = movingEmitters(package);
+    const auto targets = movingTargets(package);
+    emitters_ = uploadOrOne<gpu::PosedEmitter>(device, "pose.emitters", emitters);
+    targets_ = uploadOrOne<gpu::PosedTarget>(device, "pose.targets", targets);
+    params_ = {.vertex_count = uint32_t(vertices.size() - 1),
+               .first_vertex = package.firstMovingVertex(),
+               .leaf_count = uint32_t(tree.leaves.size()),
+               .first_slot = package.firstMovingSlot(),
+               .first_node = package.firstMovingNode(),
+               .emitter_count = uint32_t(emitters.size()),
+               .target_count = uint32_t(targets.size())};
+    rest_.assign(package.materials().begin(), package.materials().end());
+    emitters_of_ = emittersByMaterial(package);
+}
+
+void PoseStage::record(Recorder& rec, const package::Pose& pose)
+{
+    const auto scope = rec.scope("pose");
+    const bool moves = !last_ || !sameGeometry(*last_, pose);
+    if (moves)
+        uploadBones(rec, pose);
+    if (moves || moved_) // once more after the last move: then what was is what is
+        refit(rec);
+    setMaterials(rec, pose);
+    setLights(rec, pose);
+    if (moves)
+        scene_.noteMove();
+    moved_ = moves;
+    last_ = pose;
+}
+
+void PoseStage::uploadBones(Recorder& rec, const package::Pose& pose)
+{
+    writeAll(rec, bones_, std::as_bytes(std::span(pose.bones)));
+    writeAll(rec, weights_, std::as_bytes(std::span(pose.weights)));
+    rec.run(deform_, params_.vertex_count, params_,
+            {{"MovingVertices", vertices_},
+             {"Influences", influences_},
+             {"MorphOffsets", morphs_},
+             {"Bones", bones_},
+             {"Weights", weights_},
+             {"Positions", positions_},
+             {"Vertices", scene_.buffer(gpu::kVertexAttributesBinding)}});
+}
+
+void PoseStage::refit(Recorder& rec) const
+{
+    rec.clear(arrivals_);
+    rec.run(refit_, params_.leaf_count, params_,
+            {{"Positions", positions_},
+             {"Triangles", scene_.buffer(gpu::kTrianglesBinding)},
+             {"Leaves", leaves_},
+             {"Parents", parents_},
+             {"Slots", scene_.buffer(gpu::kBvhTrianglesBinding)},
+             {"LastCorners", scene_.lastCorners()},
+             {"Nodes", scene_.buffer(gpu::kBvhNodesBinding)},
+             {"Arrivals", arrivals_}});
+    rec.run(follow_, std::max({params_.emitter_count, params_.target_count, 1u}), params_,
+            {{"Emitters", emitters_},
+             {"Targets", targets_},
+             {"Slots", scene_.buffer(gpu::kBvhTrianglesBinding)},
+             {"Nodes", scene_.buffer(gpu::kBvhNodesBinding)},
+             {"Lights", scene_.buffer(gpu::kLightsBinding)},
+             {"CausticTargets", scene_.buffer(gpu::kCausticTargetsBinding)},
+             {"Info", scene_.buffer(gpu::kSceneInfoBinding)}});
+}
+
+/// Lights that the last pose had likewise are left alone: each change ends what is accumulated.
+void PoseStage::setLights(Recorder& rec, const package::Pose& pose)
+{
+    for (size_t i = 0; i < pose.lights.size(); ++i)
+    {
+        const package::PosedLight& light = pose.lights[i];
+        if (!last_ || std::memcmp(&light.light, &last_->lights[i].light, sizeof(light.light)) != 0)
+            scene_.setLight(rec, light.index, light.light);
+    }
+}
+
+/// Its triangles that are lights shine as it does.
+void PoseStage::setMaterial(Recorder& rec, uint32_t index, const gpu::Material& before, const gpu::Material& now)
+{
+    if (std::memcmp(&before, &now, sizeof(now)) == 0)
+        return;
+    scene_.setMaterial(rec, index, now);
+    if (std::memcmp(&before.emission, &now.emission, sizeof(now.emission)) != 0)
+        for (const uint32_t light : emitters_of_[index])
+            scene_.setLightEmission(rec, light, now.emission);
+}
+
+/// A clip's materials; those of the clip before that it does not set are again as in the package.
+void PoseStage::setMaterials(Recorder& rec, const package::Pose& pose)
+{
+    const auto in = [](const package::Pose& p, uint32_t index) -> const gpu::Material*
+    {
+        const auto found = std::ranges::find(p.materials, index, &package::PosedMaterial::index);
+        return found == p.materials.end() ? nullptr : &found->material;
+    };
+    const auto set = [&](uint32_t index, const gpu::Material& now)
+    {
+        const gpu::Material* before = last_ ? in(*last_, index) : nullptr;
+        setMaterial(rec, index, before != nullptr ? *before : rest_[index], now);
+    };
+    for (const package::PosedMaterial& material : pose.materials)
+        set(material.index, material.material);
+    if (last_)
+        for (const package::PosedMaterial& material : last_->materials)
+            if (in(pose, material.index) == nullptr)
+                set(material.index, rest_[material.index]);
+}

@@ -1,0 +1,37 @@
+// Brings a scene's moving geometry to a pose: deforms it, refits its part of the hierarchy, and moves what follows it.
+#pragma once
+#include "format/pose.h"
+#include "runtime/scene_gpu.h"
+#include "shaders/pose/pose.h"
+
+class PoseStage
+{
+public:
+    /// @param package that `scene` was made of; it has motion
+    PoseStage(const Device& device, SceneGpu& scene, const package::Package& package);
+
+    /// Vertices, normals, boxes, emissive triangles, caustic targets and bounds become those of the pose, and so do lights and
+    /// materials, from the next kernel of `rec` on. What triangles showed before is kept as SceneGpu::lastCorners(). Records
+    /// nothing where all this is so already.
+    void record(Recorder& rec, const package::Pose& pose);
+
+private:
+    void uploadBones(Recorder& rec, const package::Pose& pose);
+    void refit(Recorder& rec) const;
+    void setLights(Recorder& rec, const package::Pose& pose);
+    void setMaterials(Recorder& rec, const package::Pose& pose);
+    void setMaterial(Recorder& rec, uint32_t index, const gpu::Material& before, const gpu::Material& now);
+
+    SceneGpu& scene_;
+    Kernel deform_, refit_, follow_;
+    Buffer vertices_, influences_, morphs_; // gpu::MovingVertex[count + 1], gpu::Influence[], gpu::MorphOffset[]
+    Buffer bones_, weights_;                // gpu::BoneMatrix[], float[]
+    Buffer positions_;                      // vec3[vertex_count]
+    Buffer leaves_, parents_, arrivals_;    // gpu::PosedLeaf[], uint[moving nodes] twice
+    Buffer emitters_, targets_;             // gpu::PosedEmitter[], gpu::PosedTarget[]
+    gpu::PoseParams params_{};
+    std::optional<package::Pose> last_;
+    bool moved_ = false;                             // in the last record()
+    std::vector<gpu::Material> rest_;                // the package's
+    std::vector<std::vector<uint32_t>> emitters_of_; // by material: lights that are triangles of it
+};
