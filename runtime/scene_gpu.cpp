@@ -74,8 +74,7 @@ bool isAnimated(const package::Package& package, lumicut::fb::ChannelTarget targ
     if (package.motion() == nullptr)
         return false;
     return std::ranges::any_of(*package.motion()->clips(),
-                               [&](const auto* clip)
-                               {
+                               [&](const auto* clip) {
                                    return std::ranges::any_of(*clip->channels(), [&](const auto* channel)
                                                               { return channel->target() == target; });
                                });

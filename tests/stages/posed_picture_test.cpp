@@ -14,7 +14,8 @@ protected:
     /// One picture a seed, of its first frame.
     std::vector<ImageF> pictures(const SceneGpu& scene, Mode mode)
     {
-        const Camera camera{.name = {}, .position = {0, 1.6f, 4.5f}, .forward = {0, -0.2f, -0.98f}, .up = {0, 0.98f, -0.2f}};
+        const Camera camera{
+            .name = {}, .position = {0, 1.6f, 4.5f}, .forward = {0, -0.2f, -0.98f}, .up = {0, 0.98f, -0.2f}};
         Settings settings = smallSettings();
         settings.direct_samples = 4;
         std::vector<ImageF> images;
@@ -42,8 +43,9 @@ TEST_P(PosedPictures, AreThoseOfTheSceneBakedAtThatTime)
     for (const Mode mode : {Mode::kDirect, Mode::kReference, Mode::kGi})
     {
         const WelchResult result = welch(pictures(*moving, mode), pictures(*baked, mode));
-        EXPECT_FALSE(result.differ()) << "mode " << int(mode) << ": p " << result.smallest.p << " of " << result.smallest.difference
-                                      << " in tile " << result.smallest.tile_x << " " << result.smallest.tile_y;
+        EXPECT_FALSE(result.differ()) << "mode " << int(mode) << ": p " << result.smallest.p << " of "
+                                      << result.smallest.difference << " in tile " << result.smallest.tile_x << " "
+                                      << result.smallest.tile_y;
         for (const double ratio : result.mean_ratio)
             EXPECT_NEAR(ratio, 1, 0.02) << "mode " << int(mode);
     }
