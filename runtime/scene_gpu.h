@@ -1,6 +1,7 @@
 // A package's scene on the device: descriptor set 0 of every kernel.
 #pragma once
 #include "format/package_read.h"
+#include "runtime/frame/light_range.h"
 #include "runtime/gpu/gpu.h"
 
 #include <array>
@@ -46,6 +47,8 @@ public:
     const Buffer& viewScale() const { return buffers_.back(); }
     /// Grows whenever a light or an emission is replaced: what was made under another version is out of date.
     uint64_t lightsVersion() const { return lights_version_; }
+    /// As they were set last.
+    const Emitters& emitters() const { return emitters_; }
     /// By light index.
     std::span<const LightProbability> lightProbabilities() const { return light_probabilities_; }
     /// Some light has an extent, so that a ray may find it: an emissive triangle or an environment.
@@ -59,6 +62,7 @@ private:
     const Device& device_;
     gpu::SceneInfo info_{};
     std::vector<LightProbability> light_probabilities_;
+    Emitters emitters_;
     uint64_t lights_version_ = 0;
     uint32_t features_ = 0; // kFeature*
     std::array<Constant, 2> constants_{};
