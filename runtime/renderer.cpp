@@ -23,6 +23,11 @@ gpu::vec2 jitterOf(uint32_t frame)
     return {part(0.7548776662466927), part(0.5698402909980532)};
 }
 
+bool onlyLightsChanged(const SceneVersion& a, const SceneVersion& b)
+{
+    return a.geometry == b.geometry && a.materials == b.materials;
+}
+
 bool sameView(const gpu::CameraParams& a, const gpu::CameraParams& b)
 {
     return std::memcmp(&a, &b, sizeof(a)) == 0; // both from cameraParams(): sampling fields are equal
@@ -45,8 +50,10 @@ Renderer::Renderer(const Device& device, const SceneGpu& scene, Mode mode, uint3
                    const Settings& settings)
     : scene_(scene), width_(width), height_(height),
       max_batch_(mode == Mode::kReference ? batchFor(device, width * height) : 1), rays_(device, scene),
-      resolve_(device, width * height)
+      resolve_(device, width * height), last_scene_(scene.version())
 {
+    if (mode == Mode::kGi)
+        last_emitters_ = scene.emitters();
     if (mode == Mode::kReference)
         reference_.emplace(device, scene, width * height, max_batch_);
     else if (mode == Mode::kGi)
@@ -63,7 +70,8 @@ Renderer::Renderer(const Device& device, const SceneGpu& scene, Mode mode, uint3
     }
 }
 
-/// What this frame continues: a static view if neither camera nor lights have changed, else the last frame only.
+/// What this frame continues: a static view if neither camera nor lights have changed, else the last frame only, as far as its
+/// light may serve.
 FrameInfo Renderer::beginFrame(Recorder& rec, const Camera& camera, const Settings& settings, uint32_t seed)
 {
     FrameInfo frame{.camera = cameraParams(camera, width_, height_), .map_seed = seed, .number = frame_count_++};
@@ -73,8 +81,12 @@ FrameInfo Renderer::beginFrame(Recorder& rec, const Camera& camera, const Settin
     if (!last_camera_ || !scene_stands || !sameView(*last_camera_, frame.camera))
     {
         resolve_.restart(rec);
-        if (scene_stands && went_on_ && goes_on)
+        if (went_on_ && goes_on)
             frame.previous = last_camera_;
+        if (frame.previous && !scene_stands)
+            frame.light_range = onlyLightsChanged(last_scene_, scene_.version())
+                                    ? lightRange(last_emitters_, scene_.emitters())
+                                    : LightRange::anything();
         picture_seed_ =
             frame.previous ? traceSeed(seed, frame.number, 0) : seed; // means need other numbers in every frame
         went_on_ = goes_on;
@@ -85,6 +97,8 @@ FrameInfo Renderer::beginFrame(Recorder& rec, const Camera& camera, const Settin
         frame.map_seed = picture_seed_;
     if (frame.previous && antialias_)
         frame.camera.jitter = jitterOf(frame.number);
+    if (gi_ && !scene_stands)
+        last_emitters_ = scene_.emitters();
     last_scene_ = scene_.version();
     const bool repeat = gi_ && showsOneFrame(settings.view); // a debug view stands still
     frame.accumulated = repeat ? 0 : resolve_.sampleCount();
@@ -137,7 +151,8 @@ void Renderer::recordGi(Recorder& rec, const FrameInfo& frame, const Settings& s
         antialias_->recordStanding(rec, resolve_.sum(), resolve_.sampleCount(), width_ * height_);
     else if (is_antialiased_)
         antialias_->recordMoving(rec, picture, gi_->motions(), width_, height_, settings.antialias_frames,
-                                 frame.previous.has_value());
+                                 frame.previous.has_value(),
+                                 frame.light_range ? frame.light_range->surely() : gpu::vec3{1, 1, 1});
     if (shows_error_)
         error_->record(rec, resolve_.sum(), resolve_.sampleCount(), width_, height_);
 }

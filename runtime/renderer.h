@@ -99,6 +99,7 @@ private:
     bool shows_error_ = false;                     // in the last frame
     std::optional<gpu::CameraParams> last_camera_; // none: the next picture starts anew
     SceneVersion last_scene_;
+    Emitters last_emitters_; // in Mode::kGi
     uint32_t frame_count_ = 0;
     uint32_t picture_seed_ = 0; // of all frames of a static view
     bool went_on_ = false;      // the last frame left histories

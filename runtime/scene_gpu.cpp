@@ -136,7 +136,12 @@ Result<std::unique_ptr<SceneGpu>> SceneGpu::create(const Device& device, const p
 {
     std::unique_ptr<SceneGpu> scene(new SceneGpu(device));
     for (const gpu::Light& light : package.lights())
+    {
         scene->light_probabilities_.push_back({.kind = light.kind, .pmf = light.pmf});
+        scene->emitters_.lights.push_back(light);
+    }
+    for (const gpu::Material& material : package.materials())
+        scene->emitters_.emissions.push_back(material.emission);
     std::optional<Error> too_large;
     const auto fits = [&](const char* name, auto data, uint64_t limit)
     {
@@ -198,6 +203,7 @@ void SceneGpu::setLight(Recorder& rec, uint32_t index, const gpu::Light& light)
 {
     check(index < info_.light_count, "light {} of {}", index, info_.light_count);
     ++version_.lights;
+    emitters_.lights[index] = light;
     rec.write(buffers_[gpu::kLightsBinding - gpu::kBvhNodesBinding], index * sizeof(light),
               std::as_bytes(std::span(&light, 1)));
 }
@@ -206,6 +212,7 @@ void SceneGpu::setLightEmission(Recorder& rec, uint32_t index, gpu::vec3 emissio
 {
     check(index < info_.light_count, "light {} of {}", index, info_.light_count);
     ++version_.lights;
+    emitters_.lights[index].emission = emission;
     rec.write(buffer(gpu::kLightsBinding), index * sizeof(gpu::Light) + offsetof(gpu::Light, emission),
               std::as_bytes(std::span(&emission, 1)));
 }
@@ -216,6 +223,7 @@ void SceneGpu::setEmission(Recorder& rec, uint32_t index, gpu::vec3 emission)
     check((index + 1) * sizeof(gpu::Material) <= materials.size(), "material {} of {} bytes of them", index,
           materials.size());
     ++version_.lights;
+    emitters_.emissions[index] = emission;
     rec.write(materials, index * sizeof(gpu::Material) + offsetof(gpu::Material, emission),
               std::as_bytes(std::span(&emission, 1)));
 }
@@ -225,7 +233,8 @@ void SceneGpu::setMaterial(Recorder& rec, uint32_t index, const gpu::Material& m
     const Buffer& materials = buffer(gpu::kMaterialsBinding);
     check((index + 1) * sizeof(material) <= materials.size(), "material {} of {} bytes of them", index,
           materials.size());
-    ++version_.lights;
+    ++version_.materials;
+    emitters_.emissions[index] = material.emission;
     rec.write(materials, index * sizeof(material), std::as_bytes(std::span(&material, 1)));
 }
 

@@ -1,6 +1,7 @@
 // A package's scene on the device: descriptor set 0 of every kernel.
 #pragma once
 #include "format/package_read.h"
+#include "runtime/frame/light_range.h"
 #include "runtime/gpu/gpu.h"
 
 #include <array>
@@ -21,7 +22,8 @@ struct LightProbability // of the scene's power
 struct SceneVersion
 {
     uint64_t geometry = 0;
-    uint64_t lights = 0; // and materials
+    uint64_t lights = 0;    // what lights and materials emit
+    uint64_t materials = 0; // what else materials are
     bool operator==(const SceneVersion&) const = default;
 };
 
@@ -65,6 +67,8 @@ public:
     const Buffer& lastCorners() const { return last_corners_; }
     /// Some of its geometry can move.
     bool canMove() const { return info_.first_moving_slot != gpu::kNone; }
+    /// As they were set last.
+    const Emitters& emitters() const { return emitters_; }
     /// By light index.
     std::span<const LightProbability> lightProbabilities() const { return light_probabilities_; }
     /// Some light has an extent, so that a ray may find it: an emissive triangle or an environment.
@@ -79,6 +83,7 @@ private:
     gpu::SceneInfo info_{};
     std::vector<LightProbability> light_probabilities_;
     SceneVersion version_;
+    Emitters emitters_;
     uint32_t features_ = 0; // kFeature*
     std::array<Constant, 2> constants_{};
     bool reflects_roughly_ = false;

@@ -20,14 +20,15 @@ AntialiasStage::AntialiasStage(const Device& device, uint32_t max_pixels)
 }
 
 void AntialiasStage::recordMoving(Recorder& rec, const Buffer& picture, const Buffer& motions, uint32_t width,
-                                  uint32_t height, uint32_t most_frames, bool continues)
+                                  uint32_t height, uint32_t most_frames, bool continues, gpu::vec3 factor)
 {
     const auto scope = rec.scope("antialias");
     moved_frames_ = continues ? moved_frames_ + 1 : 0;
     moving_ = 1 - latest_;
     moving_counts_ = 1 - moving_counts_;
     rec.run(blend_, width * height,
-            gpu::AntialiasParams{.point_count = width * height, .width = width, .most_frames = most_frames},
+            gpu::AntialiasParams{
+                .point_count = width * height, .width = width, .most_frames = most_frames, .factor = factor},
             {{"Picture", picture},
              {"Motions", motions},
              {"OldShown", shown_[latest_]},

@@ -13,8 +13,9 @@ public:
     /// Of a frame that is the first of its picture.
     /// @param picture vec3[width * height]; @param motions gpu::Motion[width * height], kNoMotion where there is nothing to go on
     /// from; @param continues whether the last frame shown may serve
+    /// @param factor by which that frame's picture is multiplied
     void recordMoving(Recorder& rec, const Buffer& picture, const Buffer& motions, uint32_t width, uint32_t height,
-                      uint32_t most_frames, bool continues);
+                      uint32_t most_frames, bool continues, gpu::vec3 factor = {1, 1, 1});
     /// Of a frame that adds to a static view: its mean, with the picture of the moving camera fading out so that nothing jumps.
     /// @param sum vec3[point_count] of `frames` frames
     void recordStanding(Recorder& rec, const Buffer& sum, uint32_t frames, uint32_t point_count);

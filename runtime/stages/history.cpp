@@ -6,9 +6,11 @@
 #include <cmath>
 
 HistoryStage::HistoryStage(const Device& device, uint32_t max_pixels)
-    : blend_(device.kernel("history/blend")), pixels_{
-                                                  device.texelArray<gpu::PixelHistory>("history.pixels_a", max_pixels),
-                                                  device.texelArray<gpu::PixelHistory>("history.pixels_b", max_pixels)}
+    : compare_(device.kernel("history/compare")), blend_(device.kernel("history/blend")),
+      blend_changed_(device.kernel("history/blend", {{"kLightChanged", 1}})),
+      compared_(device.texelArray<gpu::PixelPairs>("history.compared", max_pixels)),
+      pixels_{device.texelArray<gpu::PixelHistory>("history.pixels_a", max_pixels),
+              device.texelArray<gpu::PixelHistory>("history.pixels_b", max_pixels)}
 {
 }
 
@@ -17,6 +19,7 @@ void HistoryStage::record(Recorder& rec, const Input& in)
     const auto scope = rec.scope("history");
     now_ = 1 - now_;
     const gpu::CameraParams& camera = in.frame.camera;
+    const LightRange range = in.frame.light_range.value_or(LightRange{});
     const gpu::HistoryParams params{.point_count = camera.width * camera.height,
                                     .width = camera.width,
                                     .most_frames = in.most_frames,
@@ -25,8 +28,24 @@ void HistoryStage::record(Recorder& rec, const Input& in)
                                     .pixel_angle = camera.orthographic ? 0 : pixelSide(camera),
                                     .pixel_side = camera.orthographic ? pixelSide(camera) : 0,
                                     .moves = in.signals.displacements.size() >=
-                                             camera.width * camera.height * sizeof(gpu::vec3)};
-    rec.run(blend_, params.point_count, params,
+                                             camera.width * camera.height * sizeof(gpu::vec3),
+                                    .least = range.least,
+                                    .most = range.most};
+    const bool changed = in.frame.light_range.has_value();
+    if (changed)
+        rec.run(compare_, params.point_count, params,
+                {{"Motions", in.signals.motions},
+                 {"Guides", in.signals.guides},
+                 {"OldGuides", in.signals.last_guides},
+                 {"OldHistory", pixels_[1 - now_]},
+                 {"DirectSignals", in.signals.direct},
+                 {"GlossySignals", in.signals.glossy},
+                 {"DiffusePoints", in.surface.diffuse_points},
+                 {"Indirect", in.light.indirect},
+                 {"Caustics", in.light.caustics},
+                 {"Compared", compared_},
+                 {"Displacements", in.signals.displacements}});
+    rec.run(changed ? blend_changed_ : blend_, params.point_count, params,
             {{"Motions", in.signals.motions},
              {"Guides", in.signals.guides},
              {"OldGuides", in.signals.last_guides},
@@ -37,6 +56,7 @@ void HistoryStage::record(Recorder& rec, const Input& in)
              {"DiffusePoints", in.surface.diffuse_points},
              {"Indirect", in.light.indirect},
              {"Caustics", in.light.caustics},
+             {"Compared", compared_},
              {"Displacements", in.signals.displacements}});
 }
 

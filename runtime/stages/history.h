@@ -22,7 +22,8 @@ public:
     double rememberedShare(const Device& device, uint32_t point_count) const;
 
 private:
-    Kernel blend_;
+    Kernel compare_, blend_, blend_changed_;
+    Buffer compared_;              // gpu::PixelPairs[max_pixels]
     std::array<Buffer, 2> pixels_; // gpu::PixelHistory[max_pixels]
     uint32_t now_ = 0;
 };

@@ -10,8 +10,9 @@ struct AntialiasParams
     uint point_count;
     uint width;       // of the picture, pixels
     uint most_frames; // that a pixel may be the mean of
+    vec3 factor;      // by which the last picture is multiplied: by so much all light has changed since
 };
-GPU_SIZE(AntialiasParams, 12);
+GPU_SIZE(AntialiasParams, 24);
 
 struct StandParams
 {

@@ -77,7 +77,7 @@ void main()
     vec2 at = vec2(here) + from;
     bool known = from.x != kNoMotion && all(greaterThanEqual(at, vec2(-0.5))) && all(lessThan(at, vec2(size()) - 0.5));
     float frames = known ? min(old_counts[pixelAt(ivec2(floor(at + 0.5)))], float(params.most_frames)) : 0.0;
-    vec3 old = known ? lastPicture(at) : own;
+    vec3 old = known ? params.factor * lastPicture(at) : own;
     if (!(count > 0.0) || !isFinite(old))
         frames = 0.0;
     if (frames > 0.0)

@@ -22,6 +22,21 @@ struct PixelHistory // by term; two texels
 };
 GPU_SIZE(PixelHistory, 32);
 
+struct LightPair // a pixel's light over reflectance, in this frame and in the mean of those before
+{
+    uvec2 words; // three mantissas of 8 bits and exponent of 8 each; 0: unknown
+};
+GPU_SIZE(LightPair, 8);
+
+struct PixelPairs // by term; two texels
+{
+    LightPair direct;
+    LightPair indirect;
+    LightPair glossy;
+    LightPair caustics;
+};
+GPU_SIZE(PixelPairs, 32);
+
 struct HistoryParams
 {
     uint point_count;
@@ -32,8 +47,10 @@ struct HistoryParams
     float pixel_angle; // radians from a pixel to the next; of an orthographic camera 0
     float pixel_side;  // metres, of an orthographic camera; else 0
     uint moves;        // 1: surfaces can move; Displacements holds one a pixel
+    vec3 least;        // where light has changed: the light is that of the last frame times a factor from here
+    vec3 most;         // to here
 };
-GPU_SIZE(HistoryParams, 32);
+GPU_SIZE(HistoryParams, 56);
 
 GPU_NAMESPACE_END
 #endif

@@ -32,9 +32,16 @@ protected:
     /// One frame of a camera that looks through the pixels' centres, with this direct light in all pixels.
     void show(const Camera& camera, gpu::vec3 direct, uint32_t most_frames = 32)
     {
+        show(camera, std::vector<gpu::vec3>(kPixels, direct), std::nullopt, most_frames);
+    }
+    void show(const Camera& camera, const std::vector<gpu::vec3>& direct, std::optional<LightRange> light_range,
+              uint32_t most_frames = 32)
+    {
         FrameInfo frame{.camera = cameraParams(camera, kWidth, kHeight), .previous = last_, .number = number_++};
         frame.camera.jitter = {0.5f, 0.5f};
-        const Buffer input = upload("test.light", std::vector<gpu::vec3>(kPixels, direct));
+        if (last_)
+            frame.light_range = light_range;
+        const Buffer input = upload("test.light", direct);
         const RayStage rays(device(), *scene_);
         submit(*scene_,
                [&](Recorder& rec)
@@ -171,6 +178,163 @@ TEST_F(History, GoesOnOnTheSameSurfaceAndStartsAnewWhereAnotherHidIt)
     fmt::print("  {} pixels went on, {} started anew\n", went_on, anew);
     EXPECT_GT(went_on, kPixels * 3 / 4);
     EXPECT_GT(anew, 10u);
+}
+
+/// A wall that fills the picture, looked at by a camera that stands still: every pixel goes on from itself.
+class ChangedLight : public History
+{
+protected:
+    void SetUp() override
+    {
+        History::SetUp();
+        builder_.quad({-500, -500, 0}, {1000, 0, 0}, {0, 1000, 0}, builder_.material(lambert(0.5)));
+        load();
+    }
+    /// Grey light of that mean, each pixel between 0.5 and 1.5 times as much.
+    std::vector<gpu::vec3> noisy(float mean)
+    {
+        std::vector<gpu::vec3> light(kPixels);
+        for (gpu::vec3& pixel : light)
+        {
+            const float grey = mean * random_.between(0.5f, 1.5f);
+            pixel = {grey, grey, grey};
+        }
+        return light;
+    }
+    void showFrames(uint32_t count, float mean)
+    {
+        for (uint32_t t = 0; t < count; ++t)
+            show(camera_, noisy(mean), std::nullopt);
+    }
+    /// Of green over the pixels: mean and standard deviation.
+    std::pair<double, double> shown()
+    {
+        double sum = 0, squares = 0;
+        for (const gpu::vec3 pixel : direct())
+        {
+            sum += pixel.y;
+            squares += double(pixel.y) * pixel.y;
+        }
+        const double mean = sum / kPixels;
+        return {mean, std::sqrt(std::max(squares / kPixels - mean * mean, 0.0))};
+    }
+
+    static constexpr double kNoise = 0.2886751345948129; // of noisy(1): its standard deviation
+    const Camera camera_{.name = "",
+                         .position = {0, 0, 5},
+                         .forward = {0, 0, -1},
+                         .up = {0, 1, 0},
+                         .vertical_fov = 0,
+                         .orthographic_height = kHeight};
+    Random random_{17};
+};
+
+TEST_F(ChangedLight, OfLightsThatAreAllOffNothingIsLeft)
+{
+    showFrames(8, 3);
+    show(camera_, std::vector<gpu::vec3>(kPixels), LightRange{});
+    for (const gpu::vec3 pixel : direct())
+        ASSERT_EQ(pixel.x + pixel.y + pixel.z, 0);
+}
+
+/// Nothing is known of the change, but all pixels show it.
+TEST_F(ChangedLight, OfALightThatIsOffNextToNothingIsLeft)
+{
+    showFrames(8, 3);
+    show(camera_, std::vector<gpu::vec3>(kPixels), LightRange::anything());
+    EXPECT_LT(shown().first, 0.01 * 3);
+    for (int t = 0; t < 3; ++t)
+        show(camera_, std::vector<gpu::vec3>(kPixels), LightRange::anything());
+    EXPECT_LT(shown().first, 0.001 * 3);
+}
+
+TEST_F(ChangedLight, WithoutAChangeTheHistoryIsAsIfNoneHadBeenAsked)
+{
+    std::array<std::vector<gpu::vec3>, 2> last;
+    for (std::vector<gpu::vec3>& got : last)
+    {
+        random_ = Random(17);
+        last_.reset();
+        number_ = 0;
+        showFrames(6, 1);
+        show(camera_, noisy(3), &got == &last[0] ? std::nullopt : std::optional(LightRange{{1, 1, 1}, {1, 1, 1}}));
+        got = direct();
+    }
+    for (uint32_t pixel = 0; pixel < kPixels; ++pixel)
+        ASSERT_EQ(last[0][pixel].x, last[1][pixel].x);
+}
+
+TEST_F(ChangedLight, KnownFactorMultipliesTheHistory)
+{
+    showFrames(16, 1);
+    const auto before = direct();
+    const std::vector<gpu::vec3> now = noisy(2);
+    show(camera_, now, LightRange{{2, 2, 2}, {2, 2, 2}});
+    const auto got = direct();
+    for (uint32_t pixel = 0; pixel < kPixels; ++pixel)
+        ASSERT_NEAR(got[pixel].x, (16 * 2 * before[pixel].x + now[pixel].x) / 17, 8 * (2 * kMantissa + kSignal));
+}
+
+/// Where the surroundings differ by no more than chance, the pixels keep what they know. All pixels together have the mean of
+/// what was shown, which the change of 1 % and five standard errors bound.
+TEST_F(ChangedLight, SmallChangeKeepsMostOfTheHistory)
+{
+    showFrames(16, 1);
+    show(camera_, noisy(1.01f), LightRange::anything());
+    const auto [mean, deviation] = shown();
+    EXPECT_NEAR(mean, 1, 0.01 + 5 * kNoise / std::sqrt(double(kPixels)));
+    EXPECT_LT(deviation, kNoise / std::sqrt(8.0)) << "half of 16 frames";
+}
+
+/// Light that doubles: the mean follows at once, and the surroundings' mean is far less noisy than a frame.
+TEST_F(ChangedLight, LargeChangeIsFollowedAtOnce)
+{
+    showFrames(16, 1);
+    show(camera_, noisy(2), LightRange::anything());
+    const auto [mean, deviation] = shown();
+    EXPECT_NEAR(mean, 2, 0.05);
+    EXPECT_LT(deviation, 2 * kNoise / 2) << "of a single frame the half";
+}
+
+TEST_F(ChangedLight, EvenLightIsWhatItIsNow)
+{
+    for (int t = 0; t < 6; ++t)
+        show(camera_, {1, 0.5f, 0.25f});
+    for (const gpu::vec3 now : {gpu::vec3{0.25f, 0.5f, 1}, gpu::vec3{4, 4, 4}, gpu::vec3{0, 1, 0}})
+    {
+        show(camera_, std::vector<gpu::vec3>(kPixels, now), LightRange::anything());
+        for (const gpu::vec3 pixel : direct())
+        {
+            // Means are compared in 8 bits.
+            ASSERT_NEAR(pixel.x, now.x, 4.0 / 255 + 8 * kSignal);
+            ASSERT_NEAR(pixel.z, now.z, 4.0 / 255 + 8 * kSignal);
+        }
+    }
+}
+
+TEST(LightRange, IsThatOfTheFactorsOfAllThatEmits)
+{
+    Emitters before{.lights = std::vector<gpu::Light>(2), .emissions = {{1, 1, 1}, {0, 0, 0}}};
+    before.lights[0].emission = {4, 2, 0};
+    before.lights[1].emission = {1, 1, 0};
+    Emitters now = before;
+    EXPECT_EQ(lightRange(before, now), (LightRange{{1, 1, 1}, {1, 1, 1}}));
+    now.lights[0].emission = {2, 6, 0};
+    EXPECT_EQ(lightRange(before, now), (LightRange{{0.5f, 1, 1}, {1, 3, 1}}));
+    now.emissions[0] = {1, 1, 0};
+    EXPECT_EQ(lightRange(before, now), (LightRange{{0.5f, 1, 0}, {1, 3, 0}}));
+    EXPECT_EQ(lightRange(before, now).surely().z, 0);
+    now.lights[1].p0 = {1, 0, 0};
+    EXPECT_EQ(lightRange(before, now), LightRange::anything());
+    now = before;
+    for (gpu::Light& light : now.lights)
+        light.emission = {};
+    now.emissions[0] = {};
+    EXPECT_EQ(lightRange(before, now), LightRange{});
+    now = before;
+    now.emissions[1] = {0, 1, 0}; // a new light only adds
+    EXPECT_EQ(lightRange(before, now).least.y, 1);
+    EXPECT_GT(lightRange(before, now).most.y, 1e30f);
 }
 
 class Antialias : public GiTest

@@ -36,7 +36,7 @@ TEST_F(ReferenceCacheTest, ThePictureIsKeptToTheLastBit)
 TEST_F(ReferenceCacheTest, EveryPartOfTheKeyCountsButTheCamerasName)
 {
     get(key_);
-    std::vector<ReferenceKey> others(9, key_);
+    std::vector<ReferenceKey> others(10, key_);
     others[0].package = 2;
     others[1].camera.position.y = 1e-3f;
     others[2].camera.vertical_fov = 0.81f;
@@ -45,14 +45,15 @@ TEST_F(ReferenceCacheTest, EveryPartOfTheKeyCountsButTheCamerasName)
     others[5].sample_count = 17;
     others[6].depth_limit = 65;
     others[7].term = 1;
+    others[9].lights = 1;
     std::swap(others[8].width, others[8].height);
     for (const ReferenceKey& other : others)
         get(other);
-    EXPECT_EQ(rendered_, 10u);
+    EXPECT_EQ(rendered_, 11u);
     ReferenceKey renamed = key_;
     renamed.camera.name = "hall";
     get(renamed);
-    EXPECT_EQ(rendered_, 10u);
+    EXPECT_EQ(rendered_, 11u);
 }
 
 TEST_F(ReferenceCacheTest, DamagedFilesAreMadeAgain)

@@ -2,6 +2,7 @@
 
 #include "runtime/animation.h"
 #include "runtime/renderer.h"
+#include "tools/bench/changing_lights.h"
 #include "tools/bench/paths.h"
 #include "tools/bench/rays.h"
 
@@ -13,26 +14,6 @@
 
 namespace
 {
-struct MovingLight
-{
-    uint32_t index;
-    gpu::Light light; // as the package has it
-};
-
-/// The first directional light, else the first point or spot light.
-std::optional<MovingLight> chooseLight(std::span<const gpu::Light> lights)
-{
-    std::optional<MovingLight> chosen;
-    for (uint32_t i = 0; i < lights.size(); ++i)
-    {
-        if (lights[i].kind == gpu::kLightDirectional)
-            return MovingLight{i, lights[i]};
-        if (!chosen && (lights[i].kind == gpu::kLightPoint || lights[i].kind == gpu::kLightSpot))
-            chosen = MovingLight{i, lights[i]};
-    }
-    return chosen;
-}
-
 struct Measurement
 {
     std::string motion;
@@ -84,20 +65,21 @@ Measurement measure(const OpenedPackage& opened, Player& player, const FrameBenc
     Recorder rec(*opened.device);
     const bool camera_moves = options.moving == "both" || options.moving == "camera";
     const bool lights_move = options.moving == "both" || options.moving == "lights";
-    const auto light = lights_move ? chooseLight(opened.package.lights()) : std::nullopt;
+    const auto lights = opened.package.lights();
+    const uint32_t light = lights_move ? chooseMovingLight(lights).value_or(gpu::kNone) : gpu::kNone;
     Measurement result;
     result.motion = fmt::format("{}; {}", camera_moves ? "the camera moves" : "the camera stands still",
                                 !lights_move ? "lights stand still"
-                                : !light     ? "no light can move, there is no directional, point or spot light"
-                                : light->light.kind == gpu::kLightDirectional ? "a directional light moves"
+                                : light == gpu::kNone ? "no light can move, there is no directional, point or spot light"
+                                : lights[light].kind == gpu::kLightDirectional ? "a directional light moves"
                                                                               : "a point or spot light moves");
     const auto record = [&](uint32_t frame)
     {
         rec.begin(scene.descriptorSet());
         const auto scope = rec.scope("frame");
         player.record(rec, frame);
-        if (light)
-            scene.setLight(rec, light->index, movedLight(light->light, scene.info(), int32_t(frame)));
+        if (light != gpu::kNone)
+            scene.setLight(rec, light, movedLight(lights[light], scene.info(), int32_t(frame)));
         renderer.record(rec, camera_moves ? movedCamera(opened.camera, scene.info(), float(frame)) : opened.camera,
                         options.settings, 0);
         renderer.display(rec, options.settings, false);

@@ -122,6 +122,10 @@ void addMotion(CLI::App& app, CommandLine& line)
     addSettings(motion, line);
     motion->add_option("--path", options.path, "how the camera moves: sway, orbit, or a file with a camera path")
         ->capture_default_str();
+    motion->add_option("--lights", options.lights, "how lights change: all pulse, or the strongest lamp does, takes on "
+                                                   "colours or goes off, or one moves")
+        ->check(CLI::IsMember(std::vector<std::string>(kLightChangeNames.begin(), kLightChangeNames.end())))
+        ->capture_default_str();
     motion->add_option("--frames", options.frames, "measured frames")
         ->check(CLI::Range(1, 100000))
         ->capture_default_str();

@@ -32,7 +32,7 @@ public:
     {
     }
 
-    Result<ImageF> picture(const Camera& camera, uint32_t term, uint32_t sample_count)
+    Result<ImageF> picture(const Camera& camera, uint32_t term, uint32_t sample_count, uint64_t lights)
     {
         const ReferenceKey key{.package = package_,
                                .camera = camera,
@@ -40,7 +40,8 @@ public:
                                .height = options_.height,
                                .sample_count = sample_count,
                                .depth_limit = options_.settings.reference_depth,
-                               .term = term};
+                               .term = term,
+                               .lights = lights};
         return cache_.picture(key, [&] { return render(key); });
     }
 
@@ -93,7 +94,7 @@ Status dumpFrame(const std::filesystem::path& folder, uint32_t number, const Seq
 }
 
 Status measureSequence(const OpenedPackage& opened, const MotionBenchOptions& options, const CameraOfFrame& camera,
-                       const Geometry& geometry, MotionResult& result)
+                       const Geometry& geometry, ChangingLights& lights, MotionResult& result)
 {
     Renderer renderer(*opened.device, *opened.scene, modeOf(options), options.width, options.height, options.settings);
     References references(opened, options);
@@ -104,6 +105,7 @@ Status measureSequence(const OpenedPackage& opened, const MotionBenchOptions& op
     for (int32_t number = -int32_t(options.warm_up); number < int32_t(options.frames); ++number)
     {
         rec.begin(opened.scene->descriptorSet());
+        lights.set(rec, number);
         {
             const auto scope = rec.scope("frame");
             renderer.record(rec, camera(number), options.settings, frameSeed(options, number));
@@ -114,7 +116,7 @@ Status measureSequence(const OpenedPackage& opened, const MotionBenchOptions& op
         result.stages.add(times);
         if (const std::optional<double> share = renderer.rememberedShare(*opened.device))
             result.reprojected = result.reprojected.value_or(0) + *share / options.frames;
-        const auto reference = references.picture(camera(number), term, options.sample_count);
+        const auto reference = references.picture(camera(number), term, options.sample_count, lights.hash());
         if (!reference)
             return reference.error();
         SequenceFrame frame{.picture = displayed(pictureOf(renderer, *opened.device), options.settings.exposure),
@@ -125,7 +127,8 @@ Status measureSequence(const OpenedPackage& opened, const MotionBenchOptions& op
         if (has_caustics)
         {
             const auto caustics =
-                references.picture(camera(number), gpu::kTermCaustics, std::max(options.sample_count / 8, 1u));
+                references.picture(camera(number), gpu::kTermCaustics,
+                                   std::max(options.sample_count / 8, 1u), lights.hash());
             if (!caustics)
                 return caustics.error();
             excludeCaustics(frame.plain, *reference, *caustics);
@@ -137,6 +140,9 @@ Status measureSequence(const OpenedPackage& opened, const MotionBenchOptions& op
             if (const Status status = dumpFrame(options.dump, uint32_t(number), kept, flip); !status)
                 return status;
     }
+    rec.begin(opened.scene->descriptorSet());
+    lights.restore(rec);
+    rec.submitAndWait();
     return Success{};
 }
 } // namespace
@@ -174,8 +180,13 @@ Status benchMotion(const MotionBenchOptions& options)
     const auto camera = chooseMotion(options.path, options.frames_per_second, *opened, geometry);
     if (!camera)
         return camera.error();
+    const auto change = std::ranges::find(kLightChangeNames, std::string_view(options.lights));
+    auto lights = ChangingLights::create(*opened, LightChange(change - kLightChangeNames.begin()),
+                                         int32_t(options.frames / 2));
+    if (!lights)
+        return lights.error();
     MotionResult result;
-    if (const Status status = measureSequence(*opened, options, *camera, geometry, result); !status)
+    if (const Status status = measureSequence(*opened, options, *camera, geometry, *lights, result); !status)
         return status;
     if (options.ghost)
         result.ghost = measureGhost(*opened, options, *camera);

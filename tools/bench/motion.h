@@ -1,12 +1,14 @@
 // The picture while the camera moves: how far it is from the truth, how much it flickers, what it remembers too long.
 #pragma once
 #include "runtime/renderer.h"
+#include "tools/bench/changing_lights.h"
 #include "tools/bench/motion_path.h"
 #include "tools/bench/opened.h"
 
 struct MotionBenchOptions : BenchOptions
 {
     std::string path = "sway"; // sway, orbit, or a file that CameraPath::load() reads
+    std::string lights = "steady"; // one of kLightChangeNames; "off" in the middle of the sequence
     std::string mode = "gi";   // gi, direct, reference
     std::string preset;        // that the settings come from, for the report
     uint32_t frames = 60;      // judged

@@ -78,6 +78,7 @@ void printJson(const MotionBenchOptions& options, const OpenedPackage& opened, c
               {"mode", options.mode},
               {"preset", options.preset},
               {"path", options.path},
+              {"lights", options.lights},
               {"camera", opened.camera.name},
               {"width", options.width},
               {"height", options.height},
@@ -107,10 +108,10 @@ void printJson(const MotionBenchOptions& options, const OpenedPackage& opened, c
 void print(const MotionBenchOptions& options, const OpenedPackage& opened, const MotionResult& result)
 {
     const SequenceMetrics& m = result.metrics;
-    fmt::print("{}, {} triangles, {}x{}, mode {}, preset {}, path {}: {} frames at {} a second after {} of warm-up, "
+    fmt::print("{}, {} triangles, {}x{}, mode {}, preset {}, path {}, lights {}: {} frames at {} a second after {} of warm-up, "
                "against {} samples a pixel\n",
                opened.device->name(), opened.package.triangles().size(), options.width, options.height, options.mode,
-               options.preset, options.path, options.frames, options.frames_per_second, options.warm_up,
+               options.preset, options.path, options.lights, options.frames, options.frames_per_second, options.warm_up,
                options.sample_count);
     fmt::print("  {:<34} {:8.4f}  (worst frame {:.4f})\n", "moving FLIP", m.meanFlip(),
                *std::ranges::max_element(m.flip()));

@@ -56,7 +56,8 @@ uint64_t ReferenceKey::hash() const
                    {camera.vertical_fov, camera.orthographic_height, camera.near_plane, camera.far_plane});
     uint64_t hash = XXH3_64bits_withSeed(numbers.data(), numbers.size() * sizeof(float), package);
     const std::array counts{width, height, sample_count, depth_limit, term};
-    return XXH3_64bits_withSeed(counts.data(), sizeof(counts), hash);
+    hash = XXH3_64bits_withSeed(counts.data(), sizeof(counts), hash);
+    return lights == 0 ? hash : XXH3_64bits_withSeed(&lights, sizeof(lights), hash);
 }
 
 uint64_t packageHash(const package::Package& package)

@@ -15,6 +15,7 @@ struct ReferenceKey
     uint32_t width = 0, height = 0, sample_count = 0;
     uint32_t depth_limit = 0; // Settings::reference_depth
     uint32_t term = 0;        // gpu::kTerm*
+    uint64_t lights = 0;      // a hash of those that are not the package's; 0: none
 
     /// XXH3-64 of it.
     uint64_t hash() const;

@@ -1,0 +1,101 @@
+// What pixels remember of their surfaces. The kernel declares `buffer Motions`, `buffer Guides`, `buffer Displacements`, `OldGuides`,
+// `OldHistory` and `HistoryParams params` before it includes this. Functions only.
+#ifndef LIB_RECALL_GLSL
+#define LIB_RECALL_GLSL
+#include "shaders/lib/history.glsl"
+#include "shaders/lib/signal.glsl"
+
+const float kOffPlane = 2.0;   // pixels, off the surface's plane, at which another pixel's surface is another one
+const float kFarAlong = 32.0;  // pixels, along it: what a pixel covers of a surface seen at 2 degrees
+const float kSameFacing = 0.9; // cosine between smooth normals of one surface
+const uint kKnownFrames = 4u;  // from this many frames on, the error is estimated from the history instead of from neighbours
+const float kLeastTap = 0.02;  // weights that sum to less are rounding
+
+struct Past
+{
+    Memory direct, indirect, glossy, caustics;
+};
+
+struct Taps // weighted sums over the pixels around
+{
+    Memory sum;
+    float weights;
+};
+
+const Taps kNoTaps = Taps(Memory(vec3(0.0), 0.0, 0.0), 0.0);
+
+void addTap(inout Taps taps, uvec2 words, float weight)
+{
+    Memory m = unpackMemory(words);
+    if (m.frames == 0.0) // a pixel of that surface which has no such light: nothing is known, which is not black
+        return;
+    taps.sum.light += weight * m.light;
+    taps.sum.frames += weight * m.frames;
+    taps.sum.spread += weight * m.spread;
+    taps.weights += weight;
+}
+
+Memory meanOf(Taps taps)
+{
+    Memory m = taps.sum;
+    return taps.weights < kLeastTap ? kNoMemory : Memory(m.light / taps.weights, m.frames / taps.weights, m.spread / taps.weights);
+}
+
+bool sameSurface(SurfaceGuide now, vec3 normal, uvec4 old, float pixel)
+{
+    vec3 d = uintBitsToFloat(old.xyz) - now.position;
+    float rounding = 1e-5 * maxComponent(abs(now.position)); // of positions far from the origin
+    return abs(dot(d, normal)) <= kOffPlane * pixel + rounding && dot(d, d) <= square(kFarAlong * pixel + rounding) &&
+           dot(octahedralToUnit(unpackSnorm4x8(old.w).xy), normal) >= kSameFacing;
+}
+
+/// Metres from a pixel to the next, across.
+float footprintAt(Motion motion) { return params.pixel_side + params.pixel_angle * motion.distance; }
+
+/// What those of the four pixels around where it was remember that saw the surface.
+Past recall(uint pixel)
+{
+    Taps direct = kNoTaps, indirect_ = kNoTaps, glossy = kNoTaps, caustics_ = kNoTaps;
+    Motion motion = motions[pixel];
+    if (params.has_previous == 0u || motion.from.x == kNoMotion || !(motion.distance < kInfinity))
+        return Past(kNoMemory, kNoMemory, kNoMemory, kNoMemory);
+    ivec2 size = ivec2(params.width, params.point_count / params.width);
+    vec2 at = vec2(pixel % params.width, pixel / params.width) + motion.from;
+    ivec2 corner = ivec2(floor(at));
+    vec2 part = at - vec2(corner);
+    SurfaceGuide guide = guides[pixel];
+    if (params.moves != 0u)
+        guide.position -= displacements[pixel]; // where it was
+    vec3 normal = octahedralToUnit(unpackSnorm4x8(guide.normals).xy);
+    float footprint = footprintAt(motion);
+    for (int k = 0; k < 4; ++k)
+    {
+        ivec2 step_ = ivec2(k & 1, k >> 1), place = corner + step_;
+        if (any(lessThan(place, ivec2(0))) || any(greaterThanEqual(place, size)))
+            continue;
+        int old = place.y * size.x + place.x;
+        vec2 near = mix(1.0 - part, part, equal(step_, ivec2(1)));
+        float weight = near.x * near.y;
+        if (!(weight > 0.0) || !sameSurface(guide, normal, texelFetch(OldGuides, old), footprint))
+            continue;
+        uvec4 first = texelFetch(OldHistory, 2 * old), second = texelFetch(OldHistory, 2 * old + 1);
+        addTap(direct, first.xy, weight);
+        addTap(indirect_, first.zw, weight);
+        addTap(glossy, second.xy, weight);
+        addTap(caustics_, second.zw, weight);
+    }
+    return Past(meanOf(direct), meanOf(indirect_), meanOf(glossy), meanOf(caustics_));
+}
+
+/// Light over reflectance. Of a channel in which the pixel reflects nothing, as dispersion leaves one a frame, it tells nothing:
+/// the past does, else another channel.
+vec3 lightOver(vec3 light, vec3 reflectance, Memory past)
+{
+    vec3 ratio = light / reflectance;
+    bvec3 unknown = lessThanEqual(reflectance, vec3(1.01 * kLeastReflectance)); // a half may have rounded it up
+    if (all(unknown)) // light by another lobe, of which this mean is as good as any
+        return ratio;
+    return mix(ratio, past.frames > 0.0 ? past.light : vec3(maxComponent(ratio)), unknown);
+}
+
+#endif
