@@ -69,8 +69,7 @@ void set(tinygltf::Model& model, const AnimationTrack& track, const std::vector<
         model.nodes[track.item].weights = value;
         break;
     case Visibility:
-        setMember(model.nodes[track.item].extensions, "KHR_node_visibility", "visible",
-                  tinygltf::Value(value[0] != 0));
+        setMember(model.nodes[track.item].extensions, "KHR_node_visibility", "visible", tinygltf::Value(value[0] != 0));
         break;
     case LightColor:
         model.lights[track.item].color = value;

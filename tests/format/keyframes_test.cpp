@@ -33,8 +33,8 @@ TEST(Keyframes, StepHoldsEachValueUntilTheNextKey)
 {
     const std::vector<float> values{3, 5, -1};
     const Keyframes keys{kTimes, values, Interpolation::Step};
-    for (const auto& [seconds, want] : {std::pair(0.0, 3.0), {1.0, 3.0}, {1.999, 3.0}, {2.0, 5.0}, {3.9, 5.0}, {4.0, -1.0},
-                                        {9.0, -1.0}})
+    for (const auto& [seconds, want] :
+         {std::pair(0.0, 3.0), {1.0, 3.0}, {1.999, 3.0}, {2.0, 5.0}, {3.9, 5.0}, {4.0, -1.0}, {9.0, -1.0}})
         EXPECT_EQ(sampleOne(keys, seconds), want) << seconds;
 }
 
@@ -42,8 +42,8 @@ TEST(Keyframes, LinearFollowsTheChord)
 {
     const std::vector<float> values{3, 5, -1};
     const Keyframes keys{kTimes, values, Interpolation::Linear};
-    for (const auto& [seconds, want] : {std::pair(0.0, 3.0), {1.0, 3.0}, {1.25, 3.5}, {2.0, 5.0}, {3.0, 2.0}, {4.0, -1.0},
-                                        {9.0, -1.0}})
+    for (const auto& [seconds, want] :
+         {std::pair(0.0, 3.0), {1.0, 3.0}, {1.25, 3.5}, {2.0, 5.0}, {3.0, 2.0}, {4.0, -1.0}, {9.0, -1.0}})
         EXPECT_DOUBLE_EQ(sampleOne(keys, seconds), want) << seconds;
 }
 
