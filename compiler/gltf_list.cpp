@@ -39,7 +39,7 @@ ListedGroup group(const char* name, const json& list)
     ListedGroup result{name, {}};
     if (list.is_array())
         for (const json& item : list)
-            result.items.push_back({text(item, "name"), text(item, "type")});
+            result.items.push_back({.name = text(item, "name"), .kind = text(item, "type")});
     return result;
 }
 
@@ -62,6 +62,24 @@ void nameByNodes(const json& nodes, ListedGroup& cameras)
         if (camera.is_number_unsigned() && camera.get<size_t>() < cameras.items.size() && !text(node, "name").empty())
             cameras.items[camera.get<size_t>()].name = text(node, "name");
     }
+}
+/// The largest key time, which accessors must state.
+std::optional<double> durationOf(const json& animation, const json& accessors)
+{
+    std::optional<double> duration;
+    const json& samplers = at(animation, {"samplers"});
+    if (!samplers.is_array() || !accessors.is_array())
+        return duration;
+    for (const json& sampler : samplers)
+    {
+        const json& input = at(sampler, {"input"});
+        if (!input.is_number_unsigned() || input.get<size_t>() >= accessors.size())
+            continue;
+        const json& most = at(accessors[input.get<size_t>()], {"max"});
+        if (most.is_array() && most.size() == 1 && most[0].is_number())
+            duration = std::max(duration.value_or(0), most[0].get<double>());
+    }
+    return duration;
 }
 } // namespace
 
@@ -89,6 +107,8 @@ Result<std::vector<ListedGroup>> listGltf(const std::filesystem::path& path)
         scene.is_number_unsigned() && scene.get<size_t>() < groups[0].items.size())
         groups[0].items[scene.get<size_t>()].kind = "default";
     nameByNodes(at(document, {"nodes"}), groups[2]);
+    for (size_t i = 0; i < groups[3].items.size(); ++i)
+        groups[3].items[i].duration = durationOf(document["animations"][i], at(document, {"accessors"}));
     return groups;
 }
 
@@ -100,8 +120,11 @@ std::string listText(const std::vector<ListedGroup>& groups)
     {
         fmt::format_to(out, "{:<10} {}\n", group.name, group.items.size());
         for (size_t i = 0; i < group.items.size(); ++i)
-            fmt::format_to(out, "  {:>3}  \"{}\"{}{}\n", i, printable(group.items[i].name),
-                           group.items[i].kind.empty() ? "" : " ", printable(group.items[i].kind));
+        {
+            const ListedItem& item = group.items[i];
+            fmt::format_to(out, "  {:>3}  \"{}\"{}{}{}\n", i, printable(item.name), item.kind.empty() ? "" : " ",
+                           printable(item.kind), item.duration ? fmt::format(" {:.4g} s", *item.duration) : "");
+        }
     }
     return result;
 }
@@ -121,6 +144,8 @@ std::string listJson(const std::vector<ListedGroup>& groups, const std::filesyst
                 entry["default"] = true;
             else if (!item.kind.empty())
                 entry["type"] = item.kind;
+            if (item.duration)
+                entry["duration"] = *item.duration;
             result[group.name].push_back(entry);
         }
     }

@@ -11,6 +11,7 @@ struct ListedItem
 {
     std::string name; // empty where the file gives none
     std::string kind; // of a camera or light: as the file says; of the default scene: "default"; else empty
+    std::optional<double> duration{}; // of an animation whose file says it, seconds
 };
 
 /// A list of the file under its plural name.

@@ -8,7 +8,7 @@
 namespace
 {
 
-constexpr int kFloat = 5126, kUint = 5125;
+constexpr int kFloat = 5126, kUint = 5125, kUshort = 5123;
 constexpr int kArrayBuffer = 34962, kElementArrayBuffer = 34963;
 
 using Json = nlohmann::ordered_json;
@@ -100,10 +100,14 @@ uint32_t GltfWriter::addView(const void* data, size_t bytes, int target)
 
 uint32_t GltfWriter::addAccessor(const void* data, size_t count, size_t components, int component_type, int target)
 {
-    static const char* const kTypes[] = {"SCALAR", "VEC2", "VEC3"};
-    const uint32_t view = addView(data, count * components * 4, target);
+    const char* const type = components == 1   ? "SCALAR"
+                             : components == 2 ? "VEC2"
+                             : components == 3 ? "VEC3"
+                             : components == 4 ? "VEC4"
+                                               : "MAT4";
+    const uint32_t view = addView(data, count * components * (component_type == kUshort ? 2 : 4), target);
     json_["accessors"].push_back(
-        {{"bufferView", view}, {"componentType", component_type}, {"count", count}, {"type", kTypes[components - 1]}});
+        {{"bufferView", view}, {"componentType", component_type}, {"count", count}, {"type", type}});
     return uint32_t(json_["accessors"].size() - 1);
 }
 
@@ -206,7 +210,7 @@ void GltfWriter::addRoot(Json node)
     json_["scenes"][0]["nodes"].push_back(json_["nodes"].size() - 1);
 }
 
-void GltfWriter::addNode(const std::string& name, uint32_t mesh, Vec3 translation, float turn_about_y)
+uint32_t GltfWriter::addNode(const std::string& name, uint32_t mesh, Vec3 translation, float turn_about_y)
 {
     Json node = {{"name", name}, {"mesh", mesh}};
     if (!isZero(translation))
@@ -215,6 +219,75 @@ void GltfWriter::addNode(const std::string& name, uint32_t mesh, Vec3 translatio
         node["rotation"] = {0, std::sin(turn_about_y / 2), 0, std::cos(turn_about_y / 2)};
     addRoot(std::move(node));
     triangle_count_ += mesh_triangles_[mesh];
+    return uint32_t(json_["nodes"].size() - 1);
+}
+
+uint32_t GltfWriter::group(const std::string& name, size_t count, Vec3 translation)
+{
+    Json& roots = json_["scenes"][0]["nodes"];
+    check(count <= roots.size(), "{} of {} roots", count, roots.size());
+    Json node = {{"name", name}};
+    if (!isZero(translation))
+        node["translation"] = triple(translation);
+    node["children"] = Json(roots.end() - std::ptrdiff_t(count), roots.end());
+    roots.erase(roots.end() - std::ptrdiff_t(count), roots.end());
+    addRoot(std::move(node));
+    return uint32_t(json_["nodes"].size() - 1);
+}
+
+std::vector<uint32_t> GltfWriter::addSkinned(const std::string& name, const Mesh& mesh, uint32_t material,
+                                             const std::vector<Joint>& joints,
+                                             const std::vector<std::array<float, 4>>& weights,
+                                             const std::vector<std::array<uint16_t, 4>>& joints_of_vertex)
+{
+    check(weights.size() == mesh.positions.size() && joints_of_vertex.size() == weights.size(), "{} weights",
+          weights.size());
+    const uint32_t index = addMesh(name, mesh, material);
+    primitive(index)["attributes"]["JOINTS_0"] =
+        addAccessor(joints_of_vertex.data(), weights.size(), 4, kUshort, kArrayBuffer);
+    primitive(index)["attributes"]["WEIGHTS_0"] = addAccessor(weights.data(), weights.size(), 4, kFloat, kArrayBuffer);
+    std::vector<uint32_t> nodes;
+    std::vector<Vec3> places;
+    std::vector<float> inverse_binds;
+    for (const Joint& joint : joints)
+    {
+        const Json node = {{"name", joint.name}, {"translation", triple(joint.translation)}};
+        places.push_back(joint.parent < 0 ? joint.translation : places[size_t(joint.parent)] + joint.translation);
+        nodes.push_back(uint32_t(json_["nodes"].size()));
+        if (joint.parent < 0)
+            addRoot(node);
+        else
+        {
+            json_["nodes"].push_back(node);
+            json_["nodes"][nodes[size_t(joint.parent)]]["children"].push_back(nodes.back());
+        }
+        const Vec3 p = -places.back();
+        inverse_binds.insert(inverse_binds.end(), {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, p.x, p.y, p.z, 1});
+    }
+    json_["skins"].push_back(
+        {{"name", name},
+         {"joints", nodes},
+         {"inverseBindMatrices", addAccessor(inverse_binds.data(), joints.size(), 16, kFloat, 0)}});
+    const uint32_t node = addNode(name, index);
+    json_["nodes"][node]["skin"] = json_["skins"].size() - 1;
+    return nodes;
+}
+
+void GltfWriter::animate(uint32_t node, const char* path, const std::vector<float>& times,
+                         const std::vector<float>& values)
+{
+    check(!times.empty() && values.size() % times.size() == 0, "{} values at {} times", values.size(), times.size());
+    Json& animations = json_["animations"];
+    if (animations.empty())
+        animations.push_back({{"name", "motion"}, {"channels", Json::array()}, {"samplers", Json::array()}});
+    const uint32_t input = addAccessor(times.data(), times.size(), 1, kFloat, 0);
+    json_["accessors"][input]["min"] = {times.front()};
+    json_["accessors"][input]["max"] = {times.back()};
+    const uint32_t output = addAccessor(values.data(), times.size(), values.size() / times.size(), kFloat, 0);
+    Json& animation = json_["animations"][0];
+    animation["samplers"].push_back({{"input", input}, {"output", output}});
+    animation["channels"].push_back(
+        {{"sampler", animation["samplers"].size() - 1}, {"target", {{"node", node}, {"path", path}}}});
 }
 
 void GltfWriter::addCamera(const std::string& name, Vec3 eye, Vec3 target, float vertical_fov)

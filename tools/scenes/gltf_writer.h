@@ -38,7 +38,8 @@ public:
     uint32_t addTexture(const std::string& name, const Texture& texture);
     uint32_t addMaterial(const MaterialDescription& material);
     uint32_t addMesh(const std::string& name, const Mesh& mesh, uint32_t material);
-    void addNode(const std::string& name, uint32_t mesh, Vec3 translation = {}, float turn_about_y = 0);
+    /// @return the node's index
+    uint32_t addNode(const std::string& name, uint32_t mesh, Vec3 translation = {}, float turn_about_y = 0);
     /// A mesh used once.
     void add(const std::string& name, const Mesh& mesh, uint32_t material)
     {
@@ -54,12 +55,30 @@ public:
     /// them.
     void place(const std::string& name, const std::array<double, 3>& translation, double scale);
 
+    /// Hangs the last `count` roots under a new one. @return its index
+    uint32_t group(const std::string& name, size_t count, Vec3 translation = {});
+    /// Joints are nodes below each other where `parent` says so, relative to these; -1: the root of them.
+    struct Joint
+    {
+        std::string name;
+        int parent = -1;
+        Vec3 translation{}; // relative to the parent
+    };
+    /// A mesh that joints place: each vertex follows the one joint, or two, that `weights` gives it; the mesh is in the space
+    /// of the first joint's parent, as bound. @return the joints' nodes
+    std::vector<uint32_t> addSkinned(const std::string& name, const Mesh& mesh, uint32_t material,
+                                     const std::vector<Joint>& joints, const std::vector<std::array<float, 4>>& weights,
+                                     const std::vector<std::array<uint16_t, 4>>& joints_of_vertex);
+    /// One channel of the only animation, linear. @param path translation, rotation or scale; values as it needs
+    void animate(uint32_t node, const char* path, const std::vector<float>& times, const std::vector<float>& values);
+
     uint64_t triangleCount() const { return triangle_count_; } // as placed by nodes
     std::vector<uint8_t> glb() const;
 
 private:
     uint32_t addView(const void* data, size_t bytes, int target);
     uint32_t addAccessor(const void* data, size_t count, size_t components, int component_type, int target);
+    nlohmann::ordered_json& primitive(uint32_t mesh) { return json_["meshes"][mesh]["primitives"][0]; }
     void useExtension(const std::string& name);
     void addRoot(nlohmann::ordered_json node);
     void addLight(nlohmann::ordered_json light, nlohmann::ordered_json node);

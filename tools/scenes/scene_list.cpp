@@ -28,6 +28,10 @@ constexpr Scene kScenes[] = {
     {"terminator_fine", [] { return terminatorScene(true); }, "the same of many polygons"},
     {"flipped", [] { return flippedScene(true); }, "normals against the winding of the triangles"},
     {"flipped_agreed", [] { return flippedScene(false); }, "the same with the winding"},
+    {"door", doorScene, "a door that opens on a dark room"},
+    {"lamp", lampScene, "a lamp that is carried through a room"},
+    {"walker", walkerScene, "a skinned figure that walks"},
+    {"ball", ballScene, "a mirror ball that rolls through a caustic"},
     {"shield", [] { return shieldScene(true); }, "a lamp 2 mm over an opaque shield, 30 m over the floor"},
     {"shield_unlit", [] { return shieldScene(false); }, "the same without the lamp"},
 };

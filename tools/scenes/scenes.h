@@ -56,5 +56,17 @@ GltfWriter flippedScene(bool against);
 /// A floor in dim sun; 30 m above it, with or without, a lamp 2 mm over an opaque shield that hides it from the floor.
 GltfWriter shieldScene(bool lamp);
 
+/// A dark room and a bright hall behind a door, which opens within two seconds.
+GltfWriter doorScene();
+
+/// A lamp, a point light over a small glowing ball, that is carried around a room.
+GltfWriter lampScene();
+
+/// A figure of one skinned mesh that walks through a room.
+GltfWriter walkerScene();
+
+/// A mirror ball that rolls through the caustic of a glass ball under a small lamp.
+GltfWriter ballScene();
+
 /// About `triangles` triangles, at least 1000: rolling ground with boulders. Not among allScenes().
 GltfWriter terrainScene(uint32_t triangles);
