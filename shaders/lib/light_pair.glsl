@@ -6,11 +6,11 @@
 struct Pairs // sums over pixels of one surface
 {
     vec3 fresh, past; // light over reflectance, in this frame and in the mean of those before
-    float squares;    // of the length of their difference
+    vec3 products;    // fresh * fresh, fresh * past, past * past, over the channels
     float count;
 };
 
-const Pairs kNoPairs = Pairs(vec3(0.0), vec3(0.0), 0.0, 0.0);
+const Pairs kNoPairs = Pairs(vec3(0.0), vec3(0.0), vec3(0.0), 0.0);
 
 uint packShared(vec3 light)
 {
@@ -35,10 +35,10 @@ void addPair(inout Pairs sum, uvec2 words)
 {
     if (words.x == 0u)
         return;
-    vec3 fresh = unpackShared(words.x), past = unpackShared(words.y), d = fresh - past;
+    vec3 fresh = unpackShared(words.x), past = unpackShared(words.y);
     sum.fresh += fresh;
     sum.past += past;
-    sum.squares += dot(d, d);
+    sum.products += vec3(dot(fresh, fresh), dot(fresh, past), dot(past, past));
     sum.count += 1.0;
 }
 

@@ -13,7 +13,7 @@ const int kFarStep = 8; // pixels: of as many that lie further apart, which show
 // Noise of a frame, as a part of its light, for as long as there are too few to tell.
 const float kLikelyNoise = 0.25;
 // What part of its noise a pixel shares with those around it. Irradiance samples and photons serve many pixels at once.
-const float kOwnRays = 0.0, kSharedSamples = 1.0, kSharedFar = 0.1;
+const float kOwnRays = 0.0, kSharedSamples = 0.3, kSharedFar = 0.1;
 
 struct Change // light in the history -> what it would be now
 {
@@ -40,17 +40,25 @@ void follow(inout Memory past, inout Change change, Pairs pairs, float single, f
     past.frames /= 1.0 + past.frames * weight * part;
 }
 
+/// Variance of a pixel of one frame: what is left between the frame and the past times the factor between their means, or what the
+/// past's own frames say, as far as there is as much light as before.
+float singleVariance(Pairs pairs, Memory past)
+{
+    float count = max(pairs.count, 1.0), square_ = dot(pairs.past, pairs.past) / square(count);
+    float factor = length(pairs.fresh) / max(length(pairs.past), 1e-30);
+    vec3 rest = (pairs.fresh - factor * pairs.past) / count; // of another colour
+    float around = dot(pairs.products, vec3(1.0, -2.0 * factor, square(factor))) / count - dot(rest, rest);
+    float noise = past.frames < float(kKnownFrames) ? max(past.spread - 1.0, square(kLikelyNoise)) : past.spread - 1.0;
+    return max(around, square_ * noise * min(factor, 1.0));
+}
+
 void reconcileTerm(inout Memory past, Pairs far, Pairs wide, Pairs near, float shared_)
 {
     if (past.frames == 0.0)
         return;
     Change change = Change(clamp(vec3(1.0), params.least, params.most), vec3(0.0)); // so much is sure
     past.light *= change.gain;
-    float count = max(wide.count, 1.0);
-    vec3 mean = wide.past / count, d = wide.fresh / count - mean;
-    float single = max(wide.squares / count - dot(d, d), dot(mean, mean) * (past.spread - 1.0));
-    if (past.frames < float(kKnownFrames))
-        single = max(single, dot(mean, mean) * square(kLikelyNoise));
+    float single = singleVariance(wide, past);
     follow(past, change, far, single, shared_ * kSharedFar, kChance);
     follow(past, change, wide, single, shared_, kChance);
     follow(past, change, near, single, shared_, kNearChance);
