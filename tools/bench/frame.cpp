@@ -1,9 +1,9 @@
 #include "tools/bench/frame.h"
 
-#include "runtime/animation.h"
 #include "runtime/renderer.h"
 #include "tools/bench/changing_lights.h"
 #include "tools/bench/paths.h"
+#include "tools/bench/played_animation.h"
 #include "tools/bench/rays.h"
 
 #include <nlohmann/json.hpp>
@@ -28,36 +28,7 @@ double since(std::chrono::steady_clock::time_point start)
     return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// What plays; nothing where no animation is asked for.
-struct Player
-{
-    std::optional<Animation> animation;
-    AnimationChoice choice;
-
-    void record(Recorder& rec, uint32_t frame)
-    {
-        constexpr double kFramesPerSecond = 60;
-        if (const double duration = animation ? animation->duration(choice) : 0; duration > 0)
-            animation->record(rec, choice, std::fmod(frame / kFramesPerSecond, duration));
-    }
-};
-
-Result<std::unique_ptr<Player>> makePlayer(const OpenedPackage& opened, const FrameBenchOptions& options)
-{
-    auto player = std::make_unique<Player>();
-    if (options.animation.empty())
-        return player;
-    if (opened.package.motion() == nullptr)
-        return Error{ExitCode::kUsage, "nothing in the package moves; leave --animation out"};
-    player->animation.emplace(*opened.device, *opened.scene, opened.package);
-    const auto choice = player->animation->choose(options.animation);
-    if (!choice)
-        return choice.error();
-    player->choice = *choice;
-    return player;
-}
-
-Measurement measure(const OpenedPackage& opened, Player& player, const FrameBenchOptions& options)
+Measurement measure(const OpenedPackage& opened, PlayedAnimation& animation, const FrameBenchOptions& options)
 {
     const Mode mode = options.mode == "gi" ? Mode::kGi : options.mode == "direct" ? Mode::kDirect : Mode::kReference;
     SceneGpu& scene = *opened.scene;
@@ -77,7 +48,7 @@ Measurement measure(const OpenedPackage& opened, Player& player, const FrameBenc
     {
         rec.begin(scene.descriptorSet());
         const auto scope = rec.scope("frame");
-        player.record(rec, frame);
+        animation.show(rec, int32_t(frame));
         if (light != gpu::kNone)
             scene.setLight(rec, light, movedLight(lights[light], scene.info(), int32_t(frame)));
         renderer.record(rec, camera_moves ? movedCamera(opened.camera, scene.info(), float(frame)) : opened.camera,
@@ -200,10 +171,10 @@ Status benchFrame(const FrameBenchOptions& options)
         measureRays(*opened->device, *opened->scene, opened->camera, options.width, options.height, kRepeats);
     if (!throughput)
         return throughput.error();
-    const auto player = makePlayer(*opened, options);
-    if (!player)
-        return player.error();
-    const Measurement result = measure(*opened, **player, options);
+    auto animation = PlayedAnimation::create(*opened, options.animation, 60);
+    if (!animation)
+        return animation.error();
+    const Measurement result = measure(*opened, *animation, options);
     (options.json ? printJson : print)(options, *opened, result, *throughput);
     return Success{};
 }

@@ -37,7 +37,12 @@ std::vector<gpu::Hit> Geometry::trace(std::span<const gpu::Ray> rays) const
 FirstHits Geometry::firstHits(const Camera& camera, uint32_t width, uint32_t height) const
 {
     const gpu::CameraParams params = cameraParams(camera, width, height);
-    return ::firstHits(params, trace(centerRays(params)), opened_.package.bvhTriangles());
+    const auto at_rest = opened_.package.bvhTriangles();
+    if (!opened_.scene->canMove())
+        return ::firstHits(params, trace(centerRays(params)), at_rest);
+    const auto now =
+        opened_.device->download<gpu::BvhTriangle>(opened_.scene->buffer(gpu::kBvhTrianglesBinding), at_rest.size());
+    return ::firstHits(params, trace(centerRays(params)), now);
 }
 
 std::vector<uint8_t> Geometry::plainPixels(const FirstHits& hits) const

@@ -120,6 +120,7 @@ void addMotion(CLI::App& app, CommandLine& line)
         addPackageCommand(app, "motion", "the picture while the camera moves: error, flicker, ghosts, times", options);
     addSize(motion, line);
     addSettings(motion, line);
+    motion->add_option("--animation", options.animation, "that plays meanwhile: a name, an index or all; default none");
     motion->add_option("--path", options.path, "how the camera moves: sway, orbit, or a file with a camera path")
         ->capture_default_str();
     motion->add_option("--lights", options.lights, "how lights change: all pulse, or the strongest lamp does, takes on "

@@ -4,6 +4,7 @@
 #include "runtime/gpu/cache_folder.h"
 #include "shaders/lib/terms.h"
 #include "tools/bench/motion_report.h"
+#include "tools/bench/played_animation.h"
 #include "tools/bench/reference_cache.h"
 #include "tools/compare/picture.h"
 
@@ -94,7 +95,8 @@ Status dumpFrame(const std::filesystem::path& folder, uint32_t number, const Seq
 }
 
 Status measureSequence(const OpenedPackage& opened, const MotionBenchOptions& options, const CameraOfFrame& camera,
-                       const Geometry& geometry, ChangingLights& lights, MotionResult& result)
+                       const Geometry& geometry, ChangingLights& lights, PlayedAnimation& animation,
+                       MotionResult& result)
 {
     Renderer renderer(*opened.device, *opened.scene, modeOf(options), options.width, options.height, options.settings);
     References references(opened, options);
@@ -108,6 +110,7 @@ Status measureSequence(const OpenedPackage& opened, const MotionBenchOptions& op
         lights.set(rec, number);
         {
             const auto scope = rec.scope("frame");
+            animation.show(rec, number);
             renderer.record(rec, camera(number), options.settings, frameSeed(options, number));
         }
         const std::vector<StageTime> times = rec.submitAndWait();
@@ -116,7 +119,7 @@ Status measureSequence(const OpenedPackage& opened, const MotionBenchOptions& op
         result.stages.add(times);
         if (const std::optional<double> share = renderer.rememberedShare(*opened.device))
             result.reprojected = result.reprojected.value_or(0) + *share / options.frames;
-        const auto reference = references.picture(camera(number), term, options.sample_count, lights.hash());
+        const auto reference = references.picture(camera(number), term, options.sample_count, lights.hash() ^ animation.hash());
         if (!reference)
             return reference.error();
         SequenceFrame frame{.picture = displayed(pictureOf(renderer, *opened.device), options.settings.exposure),
@@ -128,7 +131,7 @@ Status measureSequence(const OpenedPackage& opened, const MotionBenchOptions& op
         {
             const auto caustics =
                 references.picture(camera(number), gpu::kTermCaustics,
-                                   std::max(options.sample_count / 8, 1u), lights.hash());
+                                   std::max(options.sample_count / 8, 1u), lights.hash() ^ animation.hash());
             if (!caustics)
                 return caustics.error();
             excludeCaustics(frame.plain, *reference, *caustics);
@@ -185,8 +188,12 @@ Status benchMotion(const MotionBenchOptions& options)
                                          int32_t(options.frames / 2));
     if (!lights)
         return lights.error();
+    auto animation = PlayedAnimation::create(*opened, options.animation, options.frames_per_second);
+    if (!animation)
+        return animation.error();
     MotionResult result;
-    if (const Status status = measureSequence(*opened, options, *camera, geometry, *lights, result); !status)
+    if (const Status status = measureSequence(*opened, options, *camera, geometry, *lights, *animation, result);
+        !status)
         return status;
     if (options.ghost)
         result.ghost = measureGhost(*opened, options, *camera);

@@ -9,6 +9,7 @@ struct MotionBenchOptions : BenchOptions
 {
     std::string path = "sway"; // sway, orbit, or a file that CameraPath::load() reads
     std::string lights = "steady"; // one of kLightChangeNames; "off" in the middle of the sequence
+    std::string animation;         // that plays on the path's time; empty: none
     std::string mode = "gi";   // gi, direct, reference
     std::string preset;        // that the settings come from, for the report
     uint32_t frames = 60;      // judged
