@@ -51,18 +51,19 @@ void main()
         m.z += weight * bone.z;
     }
     positions[i] = place(m, vec4(position, 1.0));
-    // Normals by the cofactors: the inverse transpose but for its length, and with the sign that keeps them on the winding's side.
+    // Normals by the inverse transpose, but for its length: the cofactors with the determinant's sign.
+    float side = dot(m.x.xyz, cross(m.y.xyz, m.z.xyz)) < 0.0 ? -1.0 : 1.0;
     vec3 turned = dot(normal, normal) > 0.0
                       ? vec3(dot(cross(m.y.xyz, m.z.xyz), normal), dot(cross(m.z.xyz, m.x.xyz), normal), dot(cross(m.x.xyz, m.y.xyz), normal))
                       : vec3(0.0);
     float size = maxComponent(abs(turned));
     if (!(size > 0.0)) // a scale of 0, along two axes at least: there is no surface to be seen
         return;
-    turned = normalize(turned / size);
+    turned = side * normalize(turned / size);
     uint vertex = params.first_vertex + i;
     vertices[vertex].normal = packNormal(turned);
     vec3 along = place(m, vec4(tangent, 0.0));
     along -= turned * dot(along, turned);
     if (dot(along, along) > 0.0)
-        vertices[vertex].tangent = packTangent(normalize(along / maxComponent(abs(along))), moving[i].tangent.w);
+        vertices[vertex].tangent = packTangent(normalize(along / maxComponent(abs(along))), side * moving[i].tangent.w);
 }

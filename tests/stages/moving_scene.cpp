@@ -157,6 +157,7 @@ MovingScene::MovingScene() : folder_(std::make_unique<Folder>())
 
     const int hidden = gltf.node({{"mesh", b.box(0.4f, white)},
                                   {"translation", {0, 0.3f, -1.5f}},
+                                  {"scale", {-1, 1, 1}},
                                   {"extensions", {{"KHR_node_visibility", {{"visible", true}}}}}});
     b.channel({{"path", "pointer"},
                {"extensions",

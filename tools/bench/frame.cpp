@@ -39,11 +39,12 @@ Measurement measure(const OpenedPackage& opened, PlayedAnimation& animation, con
     const auto lights = opened.package.lights();
     const uint32_t light = lights_move ? chooseMovingLight(lights).value_or(gpu::kNone) : gpu::kNone;
     Measurement result;
-    result.motion = fmt::format("{}; {}", camera_moves ? "the camera moves" : "the camera stands still",
-                                !lights_move ? "lights stand still"
-                                : light == gpu::kNone ? "no light can move, there is no directional, point or spot light"
-                                : lights[light].kind == gpu::kLightDirectional ? "a directional light moves"
-                                                                              : "a point or spot light moves");
+    result.motion =
+        fmt::format("{}; {}", camera_moves ? "the camera moves" : "the camera stands still",
+                    !lights_move          ? "lights stand still"
+                    : light == gpu::kNone ? "no light can move, there is no directional, point or spot light"
+                    : lights[light].kind == gpu::kLightDirectional ? "a directional light moves"
+                                                                   : "a point or spot light moves");
     const auto record = [&](uint32_t frame)
     {
         rec.begin(scene.descriptorSet());

@@ -123,8 +123,10 @@ void addMotion(CLI::App& app, CommandLine& line)
     motion->add_option("--animation", options.animation, "that plays meanwhile: a name, an index or all; default none");
     motion->add_option("--path", options.path, "how the camera moves: sway, orbit, or a file with a camera path")
         ->capture_default_str();
-    motion->add_option("--lights", options.lights, "how lights change: all pulse, or the strongest lamp does, takes on "
-                                                   "colours or goes off, or one moves")
+    motion
+        ->add_option("--lights", options.lights,
+                     "how lights change: all pulse, or the strongest lamp does, takes on "
+                     "colours or goes off, or one moves")
         ->check(CLI::IsMember(std::vector<std::string>(kLightChangeNames.begin(), kLightChangeNames.end())))
         ->capture_default_str();
     motion->add_option("--frames", options.frames, "measured frames")

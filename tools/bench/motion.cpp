@@ -119,7 +119,8 @@ Status measureSequence(const OpenedPackage& opened, const MotionBenchOptions& op
         result.stages.add(times);
         if (const std::optional<double> share = renderer.rememberedShare(*opened.device))
             result.reprojected = result.reprojected.value_or(0) + *share / options.frames;
-        const auto reference = references.picture(camera(number), term, options.sample_count, lights.hash() ^ animation.hash());
+        const auto reference =
+            references.picture(camera(number), term, options.sample_count, lights.hash() ^ animation.hash());
         if (!reference)
             return reference.error();
         SequenceFrame frame{.picture = displayed(pictureOf(renderer, *opened.device), options.settings.exposure),
@@ -130,8 +131,8 @@ Status measureSequence(const OpenedPackage& opened, const MotionBenchOptions& op
         if (has_caustics)
         {
             const auto caustics =
-                references.picture(camera(number), gpu::kTermCaustics,
-                                   std::max(options.sample_count / 8, 1u), lights.hash() ^ animation.hash());
+                references.picture(camera(number), gpu::kTermCaustics, std::max(options.sample_count / 8, 1u),
+                                   lights.hash() ^ animation.hash());
             if (!caustics)
                 return caustics.error();
             excludeCaustics(frame.plain, *reference, *caustics);
@@ -184,8 +185,8 @@ Status benchMotion(const MotionBenchOptions& options)
     if (!camera)
         return camera.error();
     const auto change = std::ranges::find(kLightChangeNames, std::string_view(options.lights));
-    auto lights = ChangingLights::create(*opened, LightChange(change - kLightChangeNames.begin()),
-                                         int32_t(options.frames / 2));
+    auto lights =
+        ChangingLights::create(*opened, LightChange(change - kLightChangeNames.begin()), int32_t(options.frames / 2));
     if (!lights)
         return lights.error();
     auto animation = PlayedAnimation::create(*opened, options.animation, options.frames_per_second);

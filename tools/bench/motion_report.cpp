@@ -108,7 +108,8 @@ void printJson(const MotionBenchOptions& options, const OpenedPackage& opened, c
 void print(const MotionBenchOptions& options, const OpenedPackage& opened, const MotionResult& result)
 {
     const SequenceMetrics& m = result.metrics;
-    fmt::print("{}, {} triangles, {}x{}, mode {}, preset {}, path {}, lights {}: {} frames at {} a second after {} of warm-up, "
+    fmt::print("{}, {} triangles, {}x{}, mode {}, preset {}, path {}, lights {}: {} frames at {} a second after {} of "
+               "warm-up, "
                "against {} samples a pixel\n",
                opened.device->name(), opened.package.triangles().size(), options.width, options.height, options.mode,
                options.preset, options.path, options.lights, options.frames, options.frames_per_second, options.warm_up,

@@ -10,7 +10,8 @@ class PlayedAnimation
 public:
     /// @param opened borrowed, @param name as Animation::choose() takes it; empty: nothing plays
     /// @return kUsage where the package has no such animation
-    static Result<PlayedAnimation> create(const OpenedPackage& opened, const std::string& name, double frames_per_second);
+    static Result<PlayedAnimation> create(const OpenedPackage& opened, const std::string& name,
+                                          double frames_per_second);
 
     /// The scene as it is in a frame, from the next kernel of `rec` on; over and over. Frames before the first are negative.
     void show(Recorder& rec, int32_t frame);

@@ -79,7 +79,10 @@ GltfWriter doorScene()
     // Hinged at z = -0.45, it closes the doorway but for a gap of 4 mm.
     const uint32_t leaf = gltf.addMesh("door", box({-0.02f, 4e-3f, 4e-3f}, {0.02f, 1.996f, 0.896f}, 2e-3f), wood);
     const uint32_t door = gltf.addNode("door", leaf, {0, 0, -0.45f});
-    const Turns opens(2, 32, [](float t) { return turn({0, 1, 0}, 0.5f * kPi * (0.5f - 0.5f * std::cos(kPi * t / 2))); });
+    const Turns opens(2, 32,
+                      [](float t) {
+                          return turn({0, 1, 0}, 0.5f * kPi * (0.5f - 0.5f * std::cos(kPi * t / 2)));
+                      });
     gltf.animate(door, "rotation", opens.times, opens.values);
     gltf.addCamera("room", {-2.7f, 1.5f, 1.5f}, {-0.3f, 1.0f, -0.3f}, 1.1f);
     return gltf;
@@ -99,8 +102,9 @@ GltfWriter lampScene()
     // The point light is above the ball, which would hide it.
     gltf.add("bulb", sphere(0.04f, 32, 16), light);
     gltf.addPoint("spark", {0, 0.08f, 0}, {1.0f, 0.85f, 0.6f}, 4);
-    const auto path = [](float t) -> Vec3
-    { return {1.3f * std::cos(kPi * t / 2), 1.5f + 0.2f * std::sin(kPi * t), 1.3f * std::sin(kPi * t / 2)}; };
+    const auto path = [](float t) -> Vec3 {
+        return {1.3f * std::cos(kPi * t / 2), 1.5f + 0.2f * std::sin(kPi * t), 1.3f * std::sin(kPi * t / 2)};
+    };
     const uint32_t carrier = gltf.group("carrier", 2, path(0));
     const Places places(4, 64, path);
     gltf.animate(carrier, "translation", places.times, places.values);
@@ -165,13 +169,31 @@ GltfWriter walkerScene()
     addQuad(lamp, {-0.8f, 2.98f, -0.5f}, {1.6f, 0, 0}, {0, 0, 1});
     gltf.add("lamp", lamp, light);
     // Hips, chest, two arms and two legs of two parts each; it looks along +x.
-    enum : uint16_t { kHips, kChest, kHead, kLeftArm, kLeftHand, kRightArm, kRightHand, kLeftLeg, kLeftFoot, kRightLeg, kRightFoot };
-    const std::vector<GltfWriter::Joint> joints{
-        {"hips", -1, {0, 0.92f, 0}},         {"chest", kHips, {0, 0.25f, 0}},      {"head", kChest, {0, 0.40f, 0}},
-        {"left arm", kChest, {0, 0.22f, 0.24f}}, {"left hand", kLeftArm, {0, -0.30f, 0}},
-        {"right arm", kChest, {0, 0.22f, -0.24f}}, {"right hand", kRightArm, {0, -0.30f, 0}},
-        {"left leg", kHips, {0, -0.06f, 0.11f}}, {"left foot", kLeftLeg, {0, -0.40f, 0}},
-        {"right leg", kHips, {0, -0.06f, -0.11f}}, {"right foot", kRightLeg, {0, -0.40f, 0}}};
+    enum : uint16_t
+    {
+        kHips,
+        kChest,
+        kHead,
+        kLeftArm,
+        kLeftHand,
+        kRightArm,
+        kRightHand,
+        kLeftLeg,
+        kLeftFoot,
+        kRightLeg,
+        kRightFoot
+    };
+    const std::vector<GltfWriter::Joint> joints{{"hips", -1, {0, 0.92f, 0}},
+                                                {"chest", kHips, {0, 0.25f, 0}},
+                                                {"head", kChest, {0, 0.40f, 0}},
+                                                {"left arm", kChest, {0, 0.22f, 0.24f}},
+                                                {"left hand", kLeftArm, {0, -0.30f, 0}},
+                                                {"right arm", kChest, {0, 0.22f, -0.24f}},
+                                                {"right hand", kRightArm, {0, -0.30f, 0}},
+                                                {"left leg", kHips, {0, -0.06f, 0.11f}},
+                                                {"left foot", kLeftLeg, {0, -0.40f, 0}},
+                                                {"right leg", kHips, {0, -0.06f, -0.11f}},
+                                                {"right foot", kRightLeg, {0, -0.40f, 0}}};
     Figure figure;
     figure.add({{0, 1.37f, 0}, 0.20f, 0.17f, kChest, kChest});
     figure.add({{0, 1.08f, 0}, 0.14f, 0.15f, kHips, kChest});
@@ -180,20 +202,26 @@ GltfWriter walkerScene()
     {
         const bool left = side > 0;
         figure.add({{0, 1.39f, 0.24f * side}, 0.30f, 0.055f, left ? kLeftArm : kRightArm, left ? kLeftArm : kRightArm});
-        figure.add({{0, 1.09f, 0.24f * side}, 0.26f, 0.05f, left ? kLeftHand : kRightHand, left ? kLeftArm : kRightArm});
+        figure.add(
+            {{0, 1.09f, 0.24f * side}, 0.26f, 0.05f, left ? kLeftHand : kRightHand, left ? kLeftArm : kRightArm});
         figure.add({{0, 0.86f, 0.11f * side}, 0.40f, 0.08f, left ? kLeftLeg : kRightLeg, kHips});
-        figure.add({{0, 0.46f, 0.11f * side}, 0.385f, 0.07f, left ? kLeftFoot : kRightFoot, left ? kLeftLeg : kRightLeg});
+        figure.add(
+            {{0, 0.46f, 0.11f * side}, 0.385f, 0.07f, left ? kLeftFoot : kRightFoot, left ? kLeftLeg : kRightLeg});
     }
     const std::vector<uint32_t> nodes =
         gltf.addSkinned("figure", figure.mesh, cloth, joints, figure.weights, figure.joints);
     // Two steps a second, 4 m in 4 s.
-    const Places walks(4, 64, [](float t) -> Vec3
-                       { return {-2 + t, 0.92f - 0.02f + 0.02f * std::cos(4 * kPi * t), 0}; });
+    const Places walks(4, 64,
+                       [](float t) -> Vec3 {
+                           return {-2 + t, 0.92f - 0.02f + 0.02f * std::cos(4 * kPi * t), 0};
+                       });
     gltf.animate(nodes[kHips], "translation", walks.times, walks.values);
     const auto swing = [&](uint16_t joint, float phase, float middle, float range)
     {
-        const Turns turns(4, 64, [&](float t)
-                          { return turn({0, 0, 1}, middle + range * std::sin(2 * kPi * t + phase)); });
+        const Turns turns(4, 64,
+                          [&](float t) {
+                              return turn({0, 0, 1}, middle + range * std::sin(2 * kPi * t + phase));
+                          });
         gltf.animate(nodes[joint], "rotation", turns.times, turns.values);
     };
     swing(kLeftLeg, 0, 0.05f, 0.5f);
