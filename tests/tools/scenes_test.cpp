@@ -363,7 +363,7 @@ const SceneCase kCases[] = {
     {"terminator_fine", 27000, 28000, 0, {"front"}, false},
     {"flipped", 3900, 4100, 0, {"corner"}, false, true},
     {"flipped_agreed", 3900, 4100, 0, {"corner"}, false},
-    {"door", 110, 130, 0, {"room"}},
+    {"door", 100, 130, 0, {"room"}},
     {"lamp", 1000, 1200, 0, {"corner"}},
     {"walker", 8000, 9000, 0, {"side"}},
     {"ball", 25000, 26000, 0, {"front"}},

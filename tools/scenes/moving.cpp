@@ -68,7 +68,9 @@ GltfWriter doorScene()
     addQuad(end, {3, 0, 2}, {0, 0, -4}, {0, 2.6f, 0});
     gltf.add("end of the hall", end, red);
     Mesh wall;
-    addQuadAround(wall, {0, 0, -2}, {0, 0, 4}, {0, 2.6f, 0}, {0.3875f, 0.6125f, 0, 2.0f / 2.6f});
+    addQuad(wall, {0, 0, -2}, {0, 0, 1.55f}, {0, 2.6f, 0});
+    addQuad(wall, {0, 0, 0.45f}, {0, 0, 1.55f}, {0, 2.6f, 0});
+    addQuad(wall, {0, 2, -0.45f}, {0, 0, 0.9f}, {0, 0.6f, 0});
     gltf.add("wall", wall, white);
     Mesh lamp;
     addQuad(lamp, {1.2f, 2.55f, -0.3f}, {0.6f, 0, 0}, {0, 0, 0.6f});
