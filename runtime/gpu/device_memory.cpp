@@ -58,8 +58,7 @@ Buffer Device::buffer(std::string_view name, uint64_t bytes, Placement placement
     vulkanCheck(vkCreateBuffer(device_, &info, nullptr, &buffer.buffer_));
     VkMemoryRequirements needs;
     vkGetBufferMemoryRequirements(device_, buffer.buffer_, &needs);
-    const auto allocated = [&](uint64_t size)
-    {
+    const auto allocated = [&](uint64_t size) {
         return allocate({.size = size, .alignment = needs.alignment, .memoryTypeBits = needs.memoryTypeBits},
                         placement);
     };

@@ -8,6 +8,9 @@
 #include <utility>
 #include <vector>
 
+/// Frames that may be in flight at a time: before it records one, a caller waits for the frame that many before.
+constexpr uint32_t kFramesInFlight = 2;
+
 struct Binding
 {
     std::string_view block; // the GLSL block name

@@ -50,7 +50,8 @@ public:
     Scratch stage() const
     {
         Scratch scratch;
-        scratch.stage_ = std::make_shared<Scratch::Stage>(blocks_, most_bytes_, std::vector<uint64_t>());
+        scratch.stage_ =
+            std::make_shared<Scratch::Stage>(Scratch::Stage{.blocks = blocks_, .first_block = most_bytes_, .used = {}});
         return scratch;
     }
 
