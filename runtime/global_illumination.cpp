@@ -21,6 +21,11 @@ constexpr uint32_t kRimProbes = 12;
 /// distribution leaves few photons elsewhere.
 constexpr uint32_t kWarmUpRounds = 4;
 
+/// Scratch memory of the direct light at a point, of which no stage needs more; and what aligning its buffers may cost.
+constexpr uint64_t kDirectBytes =
+    sizeof(gpu::Ray) + sizeof(gpu::ShadowRay) + sizeof(gpu::EmitterRay) + sizeof(gpu::Hit);
+constexpr uint64_t kPadding = 1 << 16;
+
 constexpr float kGuideReach = 0.25f; // of the view distance: up to this far from their camera guided photons are reused
 
 /// Progressive photon mapping: r_n^2 / r_0^2 = prod (i + 2/3) / (i + 1) over the n frames before (Hachisuka et al.
@@ -89,30 +94,33 @@ GlobalIllumination::GlobalIllumination(const Device& device, const SceneGpu& sce
       has_caustic_targets_(scene.info().caustic_target_count > 0),
       has_mirrors_(has_caustic_targets_ || scene.hasFeature(gpu::kFeatureTransmission | gpu::kFeatureThin)),
       point_count_(width * height * (splitsMirrors(device, scene, width * height) ? 2 : 1)),
-      light_(device, point_count_), primary_(device, scene, width * height, point_count_ > width * height),
-      view_scale_(device, scene), direct_(device, scene, point_count_),
+      scratch_(kDirectBytes * point_count_ + kPadding), light_(device, point_count_),
+      primary_(device, scene, width * height, point_count_ > width * height, scratch_.stage()),
+      view_scale_(device, scene), direct_(device, scene, point_count_, scratch_.stage()),
+      map_scratch_(scratch_.stage()), caustic_scratch_(scratch_.stage()), signals_scratch_(scratch_.stage()),
       photons_(device, scene, PhotonKind::kGlobal, settings.photon_count,
-               photonCapacity(device, settings.photon_capacity)),
+               photonCapacity(device, settings.photon_capacity), map_scratch_),
       caustic_photons_(device, scene, PhotonKind::kCaustic, settings.caustic_photons,
-                       photonCapacity(device, uint64_t(settings.caustic_photons) * kCausticBounces)),
-      photon_tree_(device, "photon_tree", photonCapacity(device, settings.photon_capacity)),
+                       photonCapacity(device, uint64_t(settings.caustic_photons) * kCausticBounces), caustic_scratch_),
+      photon_tree_(device, "photon_tree", photonCapacity(device, settings.photon_capacity), map_scratch_),
       caustic_tree_(device, "caustic_tree",
-                    photonCapacity(device, uint64_t(settings.caustic_photons) * kCausticBounces)),
-      legs_(device), cut_(device, scene, photonCapacity(device, settings.photon_capacity)),
+                    photonCapacity(device, uint64_t(settings.caustic_photons) * kCausticBounces), caustic_scratch_),
+      legs_(device), cut_(device, scene, photonCapacity(device, settings.photon_capacity), scratch_.stage()),
       samples_(device, width, height, settings.sample_count),
-      gather_(device, scene, settings.sample_count, settings.gather_rays), interpolate_(device, settings.sample_count),
-      glossy_(device, scene, point_count_), caustics_(device, scene), compose_(device, width * height),
+      gather_(device, scene, settings.sample_count, settings.gather_rays, scratch_.stage()),
+      interpolate_(device, settings.sample_count), glossy_(device, scene, point_count_, scratch_.stage()),
+      caustics_(device, scene), compose_(device, width * height, signals_scratch_),
       views_(device, scene, width * height)
 {
     if (GuideStage::helps(scene))
         guide_.emplace(device, scene, settings.photon_count);
     const bool filters = settings.denoise_passes > 0 && (direct_.isNoisy() || has_specular_);
     if (filters || settings.history_frames > 0 || settings.antialias_frames > 0)
-        signals_.emplace(device, scene, width * height);
+        signals_.emplace(device, scene, width * height, signals_scratch_);
     if (settings.history_frames > 0)
         history_.emplace(device, width * height);
     if (filters)
-        denoise_.emplace(device, width * height);
+        denoise_.emplace(device, width * height, signals_scratch_);
 }
 
 FrameTraits GlobalIllumination::traits() const

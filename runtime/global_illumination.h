@@ -88,11 +88,15 @@ private:
     uint32_t width_, height_;
     bool has_specular_, has_caustic_targets_, has_mirrors_;
     uint32_t point_count_; // shading points: one a pixel, or two
+    // Stages run one after the other, and share memory for what only they need; those of one Scratch hand some of it on.
+    ScratchPool scratch_;
     LightBuffers light_;
     PrimaryStage primary_;
     ViewScaleStage view_scale_;
     DirectStage direct_;
-    std::optional<GuideStage> guide_; // where it helps
+    Scratch map_scratch_, caustic_scratch_; // of photons and their tree
+    Scratch signals_scratch_;               // from the signals on to the end of the frame
+    std::optional<GuideStage> guide_;       // where it helps
     PhotonStage photons_, caustic_photons_;
     PhotonTreeStage photon_tree_, caustic_tree_;
     LegsStage legs_;

@@ -4,9 +4,11 @@
 #include "runtime/gpu/instance.h"
 #include "runtime/gpu/kernel.h"
 #include "runtime/gpu/memory.h"
+#include "runtime/gpu/scratch.h"
 
 #include <cstring>
 #include <filesystem>
+#include <functional>
 #include <initializer_list>
 #include <map>
 #include <memory>
@@ -42,23 +44,29 @@ public:
     static constexpr uint32_t kUnwritten = 0x7fc07fc0;
 
     /// Device-local storage for `count` elements (at least one), filled with zeroes only by Recorder::clear.
-    /// Aborts when memory runs out; check canAllocate() before allocations that input decides.
+    /// Aborts when memory runs out.
+    /// @param scratch in whose memory the buffer is made
     template <typename T>
-    Buffer array(std::string_view name, uint64_t count) const
+    Buffer array(std::string_view name, uint64_t count, const Scratch& scratch = {}) const
     {
-        return buffer(name, (count > 0 ? count : 1) * sizeof(T), Placement::kDevice);
+        return buffer(name, (count > 0 ? count : 1) * sizeof(T), Placement::kDevice, scratch);
     }
     /// The same for what some kernel reads as a `usamplerBuffer`: software Vulkan fetches a texel with one wide load,
     /// where a storage block costs it a bounds-checked load a word. Aborts above limits().maxTexelBufferElements
     /// texels.
     template <typename T>
-    Buffer texelArray(std::string_view name, uint64_t count) const
+    Buffer texelArray(std::string_view name, uint64_t count, const Scratch& scratch = {}) const
     {
         static_assert(sizeof(T) % kTexelBytes == 0);
-        return withTexels(array<T>(name, count));
+        return withTexels(array<T>(name, count, scratch));
     }
     /// Host-visible memory that the GPU writes and the CPU reads.
     Buffer readback(std::string_view name, uint64_t bytes) const { return buffer(name, bytes, Placement::kReadback); }
+    /// Host-visible memory that the CPU writes and the GPU copies from.
+    Buffer stagingBuffer(std::string_view name, uint64_t bytes) const
+    {
+        return buffer(name, bytes, Placement::kStaging);
+    }
 
     /// A device-local buffer with the given contents; waits until they are there.
     template <typename T>
@@ -99,7 +107,12 @@ public:
     bool samplesBlocks() const { return samples_blocks_; }
     /// Milliseconds spent building pipelines so far.
     double pipelineMs() const { return pipeline_ms_; }
+    /// Pipelines built so far.
+    uint64_t pipelineCount() const { return pipeline_count_; }
+    /// Memory that buffers and images have now, bytes.
     uint64_t allocatedBytes() const { return allocated_bytes_; }
+    /// Allocations of memory made so far.
+    uint64_t allocationCount() const { return allocation_count_; }
     /// Names a Vulkan object for validation messages and captures; does nothing without the debug extension.
     void nameObject(VkObjectType type, uint64_t handle, std::string_view name) const;
 
@@ -118,15 +131,15 @@ private:
     static std::vector<ConstantValue> constantValues(const KernelCode& code, const SharedConstants& shared,
                                                      std::initializer_list<Constant> constants);
     Kernel createKernel(const KernelCode& code, std::span<const ConstantValue> constants) const;
-    Buffer buffer(std::string_view name, uint64_t bytes, Placement placement) const;
+    Buffer buffer(std::string_view name, uint64_t bytes, Placement placement, const Scratch& scratch = {}) const;
     Buffer withTexels(Buffer buffer) const;
     Buffer uploadBytes(std::string_view name, std::span<const std::byte> data) const;
     /// Memory that the CPU writes and the GPU copies from, of at least `bytes`; what was in it is lost.
     const Buffer& staging(uint64_t bytes) const;
     void downloadBytes(const Buffer& source, std::span<std::byte> data) const;
-    VkDeviceMemory allocate(const VkMemoryRequirements& needs, Placement placement, bool& host_visible) const;
-    template <typename Record>
-    void submitOnce(Record&& record) const;
+    /// @return null when memory runs out
+    std::shared_ptr<Memory> allocate(const VkMemoryRequirements& needs, Placement placement) const;
+    void submitOnce(const std::function<void(VkCommandBuffer)>& record) const;
 
     Instance instance_;
     VkPhysicalDevice physical_ = VK_NULL_HANDLE;
@@ -144,5 +157,5 @@ private:
     mutable std::map<std::pair<std::string, std::vector<ConstantValue>>, Kernel> kernels_; // by name and constants
     mutable Buffer staging_; // kept: drivers take longer to lock such memory in place than to copy what goes through it
     mutable double pipeline_ms_ = 0;
-    mutable uint64_t allocated_bytes_ = 0;
+    mutable uint64_t pipeline_count_ = 0, allocated_bytes_ = 0, allocation_count_ = 0;
 };

@@ -1,12 +1,19 @@
 #include "runtime/gpu/memory.h"
 
+Memory::~Memory()
+{
+    if (!device_)
+        return;
+    vkFreeMemory(device_, memory_, nullptr);
+    *total_ -= size_;
+}
+
 Buffer::~Buffer()
 {
     if (!device_)
         return;
     vkDestroyBufferView(device_, texels_, nullptr);
     vkDestroyBuffer(device_, buffer_, nullptr);
-    vkFreeMemory(device_, memory_, nullptr);
 }
 
 void Buffer::swap(Buffer& other)
@@ -15,6 +22,7 @@ void Buffer::swap(Buffer& other)
     std::swap(buffer_, other.buffer_);
     std::swap(texels_, other.texels_);
     std::swap(memory_, other.memory_);
+    std::swap(offset_, other.offset_);
     std::swap(size_, other.size_);
     std::swap(mapped_, other.mapped_);
     std::swap(name_, other.name_);
@@ -26,7 +34,6 @@ Image::~Image()
         return;
     vkDestroyImageView(device_, view_, nullptr);
     vkDestroyImage(device_, image_, nullptr);
-    vkFreeMemory(device_, memory_, nullptr);
 }
 
 void Image::swap(Image& other)

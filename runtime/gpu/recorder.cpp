@@ -8,7 +8,9 @@
 namespace
 {
 constexpr uint32_t kMaxTimestamps = 8192; // the reference at its greatest depth takes 6 a vertex
-}
+constexpr uint64_t kMostInline = 65536;   // bytes that a command buffer itself takes for a write (vkCmdUpdateBuffer)
+constexpr uint64_t kStagingBytes = uint64_t(1) << 20;
+} // namespace
 
 Recorder::Recorder(const Device& device) : device_(device)
 {
@@ -44,6 +46,7 @@ void Recorder::begin(const SceneSet& scene)
     barrier_count_ = 0;
     scopes_.clear();
     query_count_ = 0;
+    staged_.assign(staging_.size(), 0);
     read_.clear();
     written_.clear();
     vulkanCheck(vkResetCommandPool(device_.handle(), pool_, 0));
@@ -99,15 +102,21 @@ void Recorder::barrier()
 
 bool Recorder::conflicts(const Buffer& buffer, bool writes) const
 {
-    return written_.contains(buffer.handle()) || (writes && read_.contains(buffer.handle()));
+    const auto overlaps = [range = buffer.range()](const MemoryRange& other) { return range.overlaps(other); };
+    return std::ranges::any_of(written_, overlaps) || (writes && std::ranges::any_of(read_, overlaps));
 }
 
 void Recorder::note(const Buffer& buffer, bool reads, bool writes)
 {
+    const auto add = [range = buffer.range()](std::vector<MemoryRange>& to)
+    {
+        if (std::ranges::find(to, range) == to.end())
+            to.push_back(range);
+    };
     if (reads)
-        read_.insert(buffer.handle());
+        add(read_);
     if (writes)
-        written_.insert(buffer.handle());
+        add(written_);
 }
 
 void Recorder::prepare(const Kernel& kernel, const void* params, size_t param_bytes,
@@ -219,12 +228,34 @@ void Recorder::copy(const Buffer& from, const Buffer& to, uint64_t bytes, uint64
 
 void Recorder::write(const Buffer& to, uint64_t offset, std::span<const std::byte> bytes)
 {
-    check(bytes.size() % 4 == 0 && bytes.size() <= 65536 && offset + bytes.size() <= to.size(),
-          "{} bytes at {} of {} of {} bytes", bytes.size(), offset, to.name(), to.size());
+    check(bytes.size() % 4 == 0 && offset + bytes.size() <= to.size(), "{} bytes at {} of {} of {} bytes", bytes.size(),
+          offset, to.name(), to.size());
+    if (bytes.empty())
+        return;
     if (conflicts(to, true))
         barrier();
     note(to, false, true);
-    vkCmdUpdateBuffer(commands_, to.handle(), offset, bytes.size(), bytes.data());
+    if (bytes.size() <= kMostInline)
+        return vkCmdUpdateBuffer(commands_, to.handle(), offset, bytes.size(), bytes.data());
+    const auto [from, from_offset] = stage(bytes);
+    const VkBufferCopy region{.srcOffset = from_offset, .dstOffset = offset, .size = bytes.size()};
+    vkCmdCopyBuffer(commands_, from, to.handle(), 1, &region);
+}
+
+std::pair<VkBuffer, uint64_t> Recorder::stage(std::span<const std::byte> bytes)
+{
+    size_t i = 0;
+    while (i < staging_.size() && staged_[i] + bytes.size() > staging_[i].size())
+        ++i;
+    if (i == staging_.size())
+    {
+        staging_.push_back(device_.stagingBuffer("recorder.staging", std::max<uint64_t>(bytes.size(), kStagingBytes)));
+        staged_.push_back(0);
+    }
+    const uint64_t offset = staged_[i];
+    std::ranges::copy(bytes, staging_[i].mapped().begin() + ptrdiff_t(offset));
+    staged_[i] += bytes.size();
+    return {staging_[i].handle(), offset};
 }
 
 void Recorder::submit(VkSemaphore wait_for, VkSemaphore signal)

@@ -5,8 +5,11 @@
 #include <initializer_list>
 #include <span>
 #include <string>
-#include <unordered_set>
+#include <utility>
 #include <vector>
+
+/// Frames that may be in flight at a time: before it records one, a caller waits for the frame that many before.
+constexpr uint32_t kFramesInFlight = 2;
 
 struct Binding
 {
@@ -65,7 +68,7 @@ public:
     void clear(const Buffer& buffer) { fill(buffer, 0); }
     void fill(const Buffer& buffer, uint32_t word);
     void copy(const Buffer& from, const Buffer& to, uint64_t bytes, uint64_t to_offset = 0);
-    /// Writes at most 64 KiB, a multiple of 4 bytes, from the CPU; what is recorded afterwards sees it.
+    /// Writes a multiple of 4 bytes from the CPU; what is recorded afterwards sees it. `bytes` may change right after the call.
     void write(const Buffer& to, uint64_t offset, std::span<const std::byte> bytes);
 
     /// Runs `kernel` on at least `thread_count` threads. `params` must match the kernel's push constants in size, and
@@ -111,6 +114,8 @@ private:
     bool conflicts(const Buffer& buffer, bool writes) const;
     void note(const Buffer& buffer, bool reads, bool writes);
     void barrier();
+    /// Copies to memory that the GPU can copy from. @return where
+    std::pair<VkBuffer, uint64_t> stage(std::span<const std::byte> bytes);
     void endScope();
     uint32_t timestamp();
 
@@ -124,7 +129,11 @@ private:
     uint32_t barrier_count_ = 0;
 
     // Since the last barrier. A kernel that meets a hazard puts one full barrier before itself and these start anew.
-    std::unordered_set<VkBuffer> read_, written_;
+    std::vector<MemoryRange> read_, written_;
+
+    // Of writes, until this submission has ended; the next one uses it again.
+    std::vector<Buffer> staging_;
+    std::vector<uint64_t> staged_; // bytes that are taken of each
 
     struct ScopeRecord
     {

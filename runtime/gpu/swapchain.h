@@ -1,11 +1,8 @@
 // The images a window shows, from a picture in a buffer to the screen.
 #pragma once
-#include "runtime/gpu/device.h"
+#include "runtime/gpu/recorder.h"
 
 #include <array>
-
-/// Frames that the GPU may be at while the CPU makes the next.
-constexpr uint32_t kFramesInFlight = 2;
 
 /// kFramesInFlight frames are in flight at most: the caller waits for the frame that many before, before it calls acquire().
 class Swapchain

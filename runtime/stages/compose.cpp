@@ -2,8 +2,8 @@
 
 #include "shaders/compose/compose.h"
 
-ComposeStage::ComposeStage(const Device& device, uint32_t max_pixels)
-    : sum_(device.kernel("compose/sum")), picture_(device.array<gpu::vec3>("compose.picture", max_pixels))
+ComposeStage::ComposeStage(const Device& device, uint32_t max_pixels, const Scratch& scratch)
+    : sum_(device.kernel("compose/sum")), picture_(device.array<gpu::vec3>("compose.picture", max_pixels, scratch))
 {
 }
 

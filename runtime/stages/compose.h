@@ -6,9 +6,9 @@
 class ComposeStage
 {
 public:
-    ComposeStage(const Device& device, uint32_t max_pixels);
+    ComposeStage(const Device& device, uint32_t max_pixels, const Scratch& scratch = {});
 
-    /// The terms that `plan` shows. @return vec3[pixel_count], W/(m^2 sr)
+    /// The terms that `plan` shows. @return vec3[pixel_count], W/(m^2 sr), in scratch memory
     const Buffer& record(Recorder& rec, const LightBuffers& light, const FramePlan& plan, uint32_t pixel_count,
                          uint32_t point_count) const;
 

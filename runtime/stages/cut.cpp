@@ -1,30 +1,30 @@
 #include "runtime/stages/cut.h"
 
-CutStage::CutStage(const Device& device, const SceneGpu& scene, uint32_t max_photons)
+CutStage::CutStage(const Device& device, const SceneGpu& scene, uint32_t max_photons, const Scratch& scratch)
     : reduce_upward_(device.kernel("cut/reduce_upward", {climbConstant(device)})),
       coarse_(device.kernel("cut/coarse", scene.constants(), {climbConstant(device)})),
       select_(device.kernel("cut/select")), refine_(device.kernel("cut/refine")),
       reorder_(device.kernel("cut/reorder")), build_leaves_(device.kernel("cut/build_leaves")),
       probe_(device.kernel("cut/probe")), estimate_coverage_(device.kernel("cut/estimate_coverage", scene.constants())),
       sample_direction_(device.kernel("cut/sample_direction", scene.constants())),
-      compaction_(device, "cut.compaction", 2 * max_photons), tree_(device, "cut.tree", max_photons),
-      sums_(device.array<gpu::PhotonSums>("cut.sums", max_photons)),
-      arrivals_(device.array<uint32_t>("cut.arrivals", max_photons)),
+      compaction_(device, "cut.compaction", 2 * max_photons), tree_(device, "cut.tree", max_photons, scratch),
+      sums_(device.array<gpu::PhotonSums>("cut.sums", max_photons, scratch)),
+      arrivals_(device.array<uint32_t>("cut.arrivals", max_photons, scratch)),
       id_count_(device.array<gpu::QueueSize>("cut.id_count", 1)),
-      divided_(device.array<uint32_t>("cut.divided", max_photons)),
-      work_(device.array<uint32_t>("cut.work", max_photons)),
-      next_work_(device.array<uint32_t>("cut.next_work", max_photons)),
+      divided_(device.array<uint32_t>("cut.divided", max_photons, scratch)),
+      work_(device.array<uint32_t>("cut.work", max_photons, scratch)),
+      next_work_(device.array<uint32_t>("cut.next_work", max_photons, scratch)),
       work_size_(device.array<gpu::QueueSize>("cut.work_size", 1)),
       next_work_size_(device.array<gpu::QueueSize>("cut.next_work_size", 1)),
-      members_(device.array<uint32_t>("cut.members", 2 * uint64_t(max_photons))),
-      finals_(device.array<gpu::CutNode>("cut.finals", 2 * uint64_t(max_photons))),
-      size_(device.array<gpu::QueueSize>("cut.size", 1)), ids_(device.array<uint32_t>("cut.ids", max_photons)),
-      spheres_(device.array<gpu::vec4>("cut.spheres", max_photons)),
+      members_(device.array<uint32_t>("cut.members", 2 * uint64_t(max_photons), scratch)),
+      finals_(device.array<gpu::CutNode>("cut.finals", 2 * uint64_t(max_photons), scratch)),
+      size_(device.array<gpu::QueueSize>("cut.size", 1)), ids_(device.array<uint32_t>("cut.ids", max_photons, scratch)),
+      spheres_(device.array<gpu::vec4>("cut.spheres", max_photons, scratch)),
       nodes_(device.texelArray<gpu::CutNode>("cut.nodes", max_photons)),
-      unsorted_directions_(device.array<uint32_t>("cut.unsorted_directions", max_photons)),
+      unsorted_directions_(device.array<uint32_t>("cut.unsorted_directions", max_photons, scratch)),
       directions_(device.array<uint32_t>("cut.directions", max_photons)),
-      probes_(device, "cut.probes", gpu::kCutProbeCapacity),
-      hits_(device.texelArray<gpu::Hit>("cut.hits", gpu::kCutProbeCapacity))
+      probes_(device, "cut.probes", gpu::kCutProbeCapacity, scratch),
+      hits_(device.texelArray<gpu::Hit>("cut.hits", gpu::kCutProbeCapacity, scratch))
 {
 }
 

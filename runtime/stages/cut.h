@@ -15,7 +15,7 @@ class CutStage
 {
 public:
     /// @param max_photons in the map at most
-    CutStage(const Device& device, const SceneGpu& scene, uint32_t max_photons);
+    CutStage(const Device& device, const SceneGpu& scene, uint32_t max_photons, const Scratch& scratch = {});
 
     struct Input
     {

@@ -1,10 +1,10 @@
 #include "runtime/stages/denoise.h"
 
-DenoiseStage::DenoiseStage(const Device& device, uint32_t max_pixels)
+DenoiseStage::DenoiseStage(const Device& device, uint32_t max_pixels, const Scratch& scratch)
     : filter_(device.kernel("denoise/filter")), filtered_{device.texelArray<gpu::LightSignal>("denoise.filtered_a",
-                                                                                              max_pixels),
+                                                                                              max_pixels, scratch),
                                                           device.texelArray<gpu::LightSignal>("denoise.filtered_b",
-                                                                                              max_pixels)}
+                                                                                              max_pixels, scratch)}
 {
 }
 

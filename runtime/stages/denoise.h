@@ -6,7 +6,7 @@
 class DenoiseStage
 {
 public:
-    DenoiseStage(const Device& device, uint32_t max_pixels);
+    DenoiseStage(const Device& device, uint32_t max_pixels, const Scratch& scratch = {});
 
     struct Input
     {

@@ -7,14 +7,14 @@ namespace
 constexpr uint32_t kGroupSeed = 0x9e3779b9; // times the kind: groups are sampled independently of each other
 }
 
-DirectStage::DirectStage(const Device& device, const SceneGpu& scene, uint32_t max_pixels)
+DirectStage::DirectStage(const Device& device, const SceneGpu& scene, uint32_t max_pixels, const Scratch& scratch)
     : lights_(groupLights(scene.lightProbabilities())), sample_(device.kernel("direct/sample", scene.constants())),
       emitted_(device.kernel("direct/emitted", scene.constants())),
-      emitter_queue_(device, "direct.emitter_queue", max_pixels),
+      emitter_queue_(device, "direct.emitter_queue", max_pixels, scratch),
       shadow_size_(device.array<gpu::QueueSize>("direct.shadow_size", 1)),
-      shadow_rays_(device.array<gpu::ShadowRay>("direct.shadow_rays", max_pixels)),
-      emitter_rays_(device.array<gpu::EmitterRay>("direct.emitter_rays", max_pixels)),
-      hits_(device.texelArray<gpu::Hit>("direct.hits", max_pixels)),
+      shadow_rays_(device.array<gpu::ShadowRay>("direct.shadow_rays", max_pixels, scratch)),
+      emitter_rays_(device.array<gpu::EmitterRay>("direct.emitter_rays", max_pixels, scratch)),
+      hits_(device.texelArray<gpu::Hit>("direct.hits", max_pixels, scratch)),
       picks_(device.upload<gpu::LightPick>("direct.picks", lights_.picks)), has_area_lights_(scene.hasAreaLights()),
       is_noisy_(has_area_lights_ || !std::ranges::all_of(lights_.groups, &LightGroup::one_place))
 {

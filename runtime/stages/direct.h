@@ -7,7 +7,7 @@
 class DirectStage
 {
 public:
-    DirectStage(const Device& device, const SceneGpu& scene, uint32_t max_pixels);
+    DirectStage(const Device& device, const SceneGpu& scene, uint32_t max_pixels, const Scratch& scratch = {});
 
     struct Input
     {

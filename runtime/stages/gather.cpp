@@ -1,19 +1,19 @@
 #include "runtime/stages/gather.h"
 
 GatherStage::GatherStage(const Device& device, const SceneGpu& scene, uint32_t max_samples,
-                         uint32_t max_rays_per_sample)
+                         uint32_t max_rays_per_sample, const Scratch& scratch)
     : max_samples_(max_samples), max_rays_(max_samples * max_rays_per_sample),
       has_specular_(scene.hasFeature(gpu::kFeatureSpecular)), generate_(device.kernel("gather/generate")),
       generate_pixels_(device.kernel("gather/generate_pixels", scene.constants())),
       shade_(device.kernel("gather/shade", scene.constants())),
       shade_knn_(device.kernel("gather/shade_knn", scene.constants())), sum_(device.kernel("gather/sum")),
       add_(device.kernel("gather/add")), project_(device.kernel("gather/project", scene.constants())),
-      queue_(device, "gather.queue", max_samples * max_rays_per_sample),
-      next_queue_(device, "gather.next_queue", max_samples * max_rays_per_sample),
-      hits_(device.texelArray<gpu::Hit>("gather.hits", uint64_t(max_samples) * max_rays_per_sample)),
-      states_(device.array<gpu::GatherState>("gather.states", uint64_t(max_samples) * max_rays_per_sample)),
-      gathered_(device.array<gpu::Gathered>("gather.gathered", uint64_t(max_samples) * max_rays_per_sample)),
-      directions_(device.array<uint32_t>("gather.directions", uint64_t(max_samples) * max_rays_per_sample)),
+      queue_(device, "gather.queue", max_samples * max_rays_per_sample, scratch),
+      next_queue_(device, "gather.next_queue", max_samples * max_rays_per_sample, scratch),
+      hits_(device.texelArray<gpu::Hit>("gather.hits", uint64_t(max_samples) * max_rays_per_sample, scratch)),
+      states_(device.array<gpu::GatherState>("gather.states", uint64_t(max_samples) * max_rays_per_sample, scratch)),
+      gathered_(device.array<gpu::Gathered>("gather.gathered", uint64_t(max_samples) * max_rays_per_sample, scratch)),
+      directions_(device.array<uint32_t>("gather.directions", uint64_t(max_samples) * max_rays_per_sample, scratch)),
       no_legs_(device.array<gpu::Leg>("gather.no_legs", gpu::kLegCount)),
       harmonics_(device.texelArray<gpu::SampleHarmonics>("gather.harmonics", scene.reflectsRoughly() ? max_samples : 1))
 {

@@ -13,7 +13,8 @@
 class GatherStage
 {
 public:
-    GatherStage(const Device& device, const SceneGpu& scene, uint32_t max_samples, uint32_t max_rays_per_sample);
+    GatherStage(const Device& device, const SceneGpu& scene, uint32_t max_samples, uint32_t max_rays_per_sample,
+                const Scratch& scratch = {});
 
     struct Input
     {

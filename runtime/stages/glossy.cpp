@@ -2,16 +2,17 @@
 
 #include "runtime/stages/glossy_lobe.h"
 
-GlossyStage::GlossyStage(const Device& device, const SceneGpu& scene, uint32_t max_pixels)
+GlossyStage::GlossyStage(const Device& device, const SceneGpu& scene, uint32_t max_pixels, const Scratch& scratch)
     : generate_(device.kernel("glossy/generate", scene.constants())),
       shade_(device.kernel("glossy/shade", scene.constants())),
-      harmonics_(device.kernel("glossy/harmonics", scene.constants())), queue_(device, "glossy.queue", max_pixels),
-      next_queue_(device, "glossy.next_queue", max_pixels),
-      hits_(device.texelArray<gpu::Hit>("glossy.hits", max_pixels)),
-      states_(device.array<gpu::GatherState>("glossy.states", max_pixels)),
+      harmonics_(device.kernel("glossy/harmonics", scene.constants())),
+      queue_(device, "glossy.queue", max_pixels, scratch),
+      next_queue_(device, "glossy.next_queue", max_pixels, scratch),
+      hits_(device.texelArray<gpu::Hit>("glossy.hits", max_pixels, scratch)),
+      states_(device.array<gpu::GatherState>("glossy.states", max_pixels, scratch)),
       lobes_(device.upload<gpu::GlossyLobe>("glossy.lobes",
                                             scene.reflectsRoughly() ? glossyLobes() : std::vector<gpu::GlossyLobe>(1))),
-      shares_(device.array<float>("glossy.shares", scene.reflectsRoughly() ? max_pixels : 1))
+      shares_(device.array<float>("glossy.shares", scene.reflectsRoughly() ? max_pixels : 1, scratch))
 {
 }
 

@@ -9,7 +9,7 @@
 class GlossyStage
 {
 public:
-    GlossyStage(const Device& device, const SceneGpu& scene, uint32_t max_pixels);
+    GlossyStage(const Device& device, const SceneGpu& scene, uint32_t max_pixels, const Scratch& scratch = {});
 
     struct Input
     {

@@ -1,10 +1,11 @@
 #include "runtime/stages/photon_tree.h"
 
-PhotonTreeStage::PhotonTreeStage(const Device& device, std::string_view name, uint32_t max_photons)
+PhotonTreeStage::PhotonTreeStage(const Device& device, std::string_view name, uint32_t max_photons,
+                                 const Scratch& scratch)
     : keys_(device.kernel("photons/keys")), reorder_(device.kernel("photons/reorder")),
-      tree_(device, fmt::format("{}.tree", name), max_photons),
+      tree_(device, fmt::format("{}.tree", name), max_photons, scratch),
       size_(device.array<gpu::QueueSize>(fmt::format("{}.size", name), 1)),
-      spheres_(device.array<gpu::vec4>(fmt::format("{}.spheres", name), max_photons)),
+      spheres_(device.array<gpu::vec4>(fmt::format("{}.spheres", name), max_photons, scratch)),
       sorted_(device.texelArray<gpu::Photon>(fmt::format("{}.sorted", name), max_photons))
 {
 }

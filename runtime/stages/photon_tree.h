@@ -7,7 +7,8 @@ class PhotonTreeStage
 {
 public:
     /// @param max_photons capacity of the photon stage it is built from
-    PhotonTreeStage(const Device& device, std::string_view name, uint32_t max_photons);
+    /// @param scratch that stage's
+    PhotonTreeStage(const Device& device, std::string_view name, uint32_t max_photons, const Scratch& scratch = {});
 
     struct Output
     {

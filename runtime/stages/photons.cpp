@@ -7,19 +7,20 @@ constexpr float kAimedFraction = 0.9f;
 } // namespace
 
 PhotonStage::PhotonStage(const Device& device, const SceneGpu& scene, PhotonKind kind, uint32_t max_paths,
-                         uint32_t capacity)
+                         uint32_t capacity, const Scratch& scratch)
     : kind_(kind), has_targets_(scene.info().caustic_target_count > 0), capacity_(capacity),
       emit_(device.kernel("photons/emit", scene.constants())),
       trace_(device.kernel("photons/trace", scene.constants())), close_(device.kernel("photons/close")),
       place_(device.kernel("photons/place")), scan_(device, "photons.scan", max_paths),
-      starts_(device.array<gpu::PhotonStart>("photons.starts", max_paths)),
-      photons_(device.array<gpu::Photon>("photons.photons", capacity)),
-      tags_(device.array<gpu::PhotonTag>("photons.tags", capacity)),
+      starts_(device.array<gpu::PhotonStart>("photons.starts", max_paths, scratch)),
+      photons_(device.array<gpu::Photon>("photons.photons", capacity, scratch)),
+      tags_(device.array<gpu::PhotonTag>("photons.tags", capacity, scratch)),
       appended_(device.array<uint32_t>("photons.appended", 1)),
-      counts_(device.array<uint32_t>("photons.counts", max_paths)),
-      offsets_(device.array<uint32_t>("photons.offsets", max_paths)),
+      counts_(device.array<uint32_t>("photons.counts", max_paths, scratch)),
+      offsets_(device.array<uint32_t>("photons.offsets", max_paths, scratch)),
       total_(device.array<uint32_t>("photons.total", 1)), store_(device.array<gpu::PhotonStore>("photons.store", 1)),
-      slots_(device.array<uint32_t>("photons.slots", capacity)), size_(device.array<gpu::QueueSize>("photons.size", 1)),
+      slots_(device.array<uint32_t>("photons.slots", capacity, scratch)),
+      size_(device.array<gpu::QueueSize>("photons.size", 1)),
       path_size_(device.array<gpu::QueueSize>("photons.path_size", 1)),
       in_order_(device.array<gpu::QueueSize>("photons.in_order", 1)),
       again_(device.array<gpu::QueueSize>("photons.again", 1)),

@@ -17,7 +17,8 @@ public:
     /// @param max_paths photons emitted a frame at most
     /// @param capacity photons that a map holds at most: where paths store more, the last paths are left out and the others
     ///        carry their light
-    PhotonStage(const Device& device, const SceneGpu& scene, PhotonKind kind, uint32_t max_paths, uint32_t capacity);
+    PhotonStage(const Device& device, const SceneGpu& scene, PhotonKind kind, uint32_t max_paths, uint32_t capacity,
+                const Scratch& scratch = {});
 
     struct Input
     {
@@ -29,7 +30,7 @@ public:
             gpu::kNone; // photons that a path may store; a limit loses power: for tests of the first bounces
         bool operator==(const Input&) const = default; // equal input under equal lights gives equal photons
     };
-    using Output = StoredPhotons;
+    using Output = StoredPhotons; // in scratch memory
     Output record(Recorder& rec, const RayStage& rays, const Input& in) const;
     /// gpu::PhotonStore of the last record().
     const Buffer& store() const { return store_; }

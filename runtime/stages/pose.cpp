@@ -93,12 +93,6 @@ bool sameGeometry(const package::Pose& a, const package::Pose& b)
     return sameBytes(a.bones, b.bones) && sameBytes(a.weights, b.weights);
 }
 
-void writeAll(Recorder& rec, const Buffer& to, std::span<const std::byte> bytes)
-{
-    constexpr size_t kMost = 65536; // of one write
-    for (size_t first = 0; first < bytes.size(); first += kMost)
-        rec.write(to, first, bytes.subspan(first, std::min(kMost, bytes.size() - first)));
-}
 } // namespace
 
 PoseStage::PoseStage(const Device& device, SceneGpu& scene, const package::Package& package)
@@ -153,8 +147,8 @@ void PoseStage::record(Recorder& rec, const package::Pose& pose)
 
 void PoseStage::uploadBones(Recorder& rec, const package::Pose& pose)
 {
-    writeAll(rec, bones_, std::as_bytes(std::span(pose.bones)));
-    writeAll(rec, weights_, std::as_bytes(std::span(pose.weights)));
+    rec.write(bones_, 0, std::as_bytes(std::span(pose.bones)));
+    rec.write(weights_, 0, std::as_bytes(std::span(pose.weights)));
     rec.run(deform_, params_.vertex_count, params_,
             {{"MovingVertices", vertices_},
              {"Influences", influences_},

@@ -2,12 +2,13 @@
 
 #include "runtime/camera.h"
 
-PrimaryStage::PrimaryStage(const Device& device, const SceneGpu& scene, uint32_t max_pixels, bool splits)
+PrimaryStage::PrimaryStage(const Device& device, const SceneGpu& scene, uint32_t max_pixels, bool splits,
+                           const Scratch& scratch)
     : has_specular_(scene.hasFeature(gpu::kFeatureSpecular)), splits_(splits),
       generate_(device.kernel("primary/generate")), chain_(device.kernel("primary/chain", scene.constants())),
-      queue_(device, "primary.queue", max_pixels * (splits ? 2 : 1)),
-      next_queue_(device, "primary.next_queue", max_pixels * (splits ? 2 : 1)),
-      hits_(device.texelArray<gpu::Hit>("primary.hits", max_pixels * (splits ? 2 : 1))),
+      queue_(device, "primary.queue", max_pixels * (splits ? 2 : 1), scratch),
+      next_queue_(device, "primary.next_queue", max_pixels * (splits ? 2 : 1), scratch),
+      hits_(device.texelArray<gpu::Hit>("primary.hits", max_pixels * (splits ? 2 : 1), scratch)),
       points_(device.array<gpu::ShadingPoint>("primary.points", max_pixels * (splits ? 2 : 1))),
       diffuse_points_(device.texelArray<gpu::DiffusePoint>("primary.diffuse_points", max_pixels * (splits ? 2 : 1)))
 {

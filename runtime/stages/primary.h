@@ -15,7 +15,8 @@ public:
     static float textureWidth(const gpu::CameraParams& camera);
 
     /// @param splits whether mirrored light gets points of its own; otherwise reflection or transmission is chosen at random
-    PrimaryStage(const Device& device, const SceneGpu& scene, uint32_t max_pixels, bool splits = false);
+    PrimaryStage(const Device& device, const SceneGpu& scene, uint32_t max_pixels, bool splits = false,
+                 const Scratch& scratch = {});
 
     struct Input
     {

@@ -67,7 +67,7 @@ Workers fastestWorkers(const Device& device)
 }
 
 RadixSort::RadixSort(const Device& device, std::string_view name, uint32_t max_count, uint32_t key_words,
-                     std::optional<Workers> workers)
+                     std::optional<Workers> workers, const Scratch& scratch)
     : max_count_(max_count), key_words_(key_words), workers_(workers.value_or(fastestWorkers(device))),
       worker_count_(sortWorkerCount(max_count, workers_)),
       in_one_group_(workers_ == Workers::kGroups && max_count <= gpu::kSmallSort)
@@ -83,9 +83,10 @@ RadixSort::RadixSort(const Device& device, std::string_view name, uint32_t max_c
     count_ = device.kernel(kind + "count", {words});
     offsets_ = device.kernel(kind + "offsets");
     move_ = device.kernel(kind + "move", {words});
-    keys_ = device.array<uint32_t>(fmt::format("{}.keys", name), uint64_t(max_count) * key_words);
-    values_ = device.array<uint32_t>(fmt::format("{}.values", name), max_count);
-    counts_ = device.array<uint32_t>(fmt::format("{}.counts", name), uint64_t(worker_count_) * gpu::kMaxDigits);
+    keys_ = device.array<uint32_t>(fmt::format("{}.keys", name), uint64_t(max_count) * key_words, scratch);
+    values_ = device.array<uint32_t>(fmt::format("{}.values", name), max_count, scratch);
+    counts_ =
+        device.array<uint32_t>(fmt::format("{}.counts", name), uint64_t(worker_count_) * gpu::kMaxDigits, scratch);
     totals_ = device.array<uint32_t>(fmt::format("{}.totals", name), gpu::kMaxDigits);
 }
 

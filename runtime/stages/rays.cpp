@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-RayQueue::RayQueue(const Device& device, std::string_view name, uint32_t capacity)
+RayQueue::RayQueue(const Device& device, std::string_view name, uint32_t capacity, const Scratch& scratch)
     : size(device.array<gpu::QueueSize>(fmt::format("{}.size", name), 1)),
-      rays(device.texelArray<gpu::Ray>(fmt::format("{}.rays", name), capacity))
+      rays(device.texelArray<gpu::Ray>(fmt::format("{}.rays", name), capacity, scratch))
 {
 }
 

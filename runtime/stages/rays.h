@@ -7,7 +7,7 @@
 /// A queue whose length is made on the GPU, with room for its indirect dispatch.
 struct RayQueue
 {
-    RayQueue(const Device& device, std::string_view name, uint32_t capacity);
+    RayQueue(const Device& device, std::string_view name, uint32_t capacity, const Scratch& scratch = {});
     Buffer size; // gpu::QueueSize
     Buffer rays; // gpu::Ray[capacity]
 };

@@ -3,12 +3,12 @@
 #include "runtime/camera.h"
 #include "runtime/stages/primary.h"
 
-SignalsStage::SignalsStage(const Device& device, const SceneGpu& scene, uint32_t max_pixels)
+SignalsStage::SignalsStage(const Device& device, const SceneGpu& scene, uint32_t max_pixels, const Scratch& scratch)
     : scene_(scene), prepare_(device.kernel("signals/prepare", scene.constants())),
       apply_(device.kernel("signals/apply")), views_(device.array<gpu::FrameViews>("signals.views", 1)),
-      motions_(device.array<gpu::Motion>("signals.motions", max_pixels)),
-      direct_(device.texelArray<gpu::LightSignal>("signals.direct", max_pixels)),
-      glossy_(device.texelArray<gpu::LightSignal>("signals.glossy", max_pixels)),
+      motions_(device.array<gpu::Motion>("signals.motions", max_pixels, scratch)),
+      direct_(device.texelArray<gpu::LightSignal>("signals.direct", max_pixels, scratch)),
+      glossy_(device.texelArray<gpu::LightSignal>("signals.glossy", max_pixels, scratch)),
       displacements_(device.array<gpu::vec3>("signals.displacements", scene.canMove() ? max_pixels : 1)),
       guides_{device.texelArray<gpu::SurfaceGuide>("signals.guides_a", max_pixels),
               device.texelArray<gpu::SurfaceGuide>("signals.guides_b", max_pixels)}

@@ -19,7 +19,7 @@ struct SignalBuffers
 class SignalsStage
 {
 public:
-    SignalsStage(const Device& device, const SceneGpu& scene, uint32_t max_pixels);
+    SignalsStage(const Device& device, const SceneGpu& scene, uint32_t max_pixels, const Scratch& scratch = {});
 
     /// @param terms gpu::kLight* bits: of `light` that is there
     SignalBuffers record(Recorder& rec, const FrameInfo& frame, const SurfaceBuffers& surface,
@@ -28,7 +28,7 @@ public:
     void apply(Recorder& rec, const Buffer& own, const Buffer& filtered, const Buffer& light,
                uint32_t point_count) const;
 
-    const Buffer& motions() const { return motions_; } // of the last record()
+    const Buffer& motions() const { return motions_; } // of the last record(), in scratch memory
 
 private:
     const SceneGpu& scene_;

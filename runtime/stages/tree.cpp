@@ -5,16 +5,16 @@ Constant climbConstant(const Device& device)
     return {"kFences", device.isCpu() ? 0u : 1u};
 }
 
-Tree::Tree(const Device& device, std::string_view name, uint32_t max_count)
+Tree::Tree(const Device& device, std::string_view name, uint32_t max_count, const Scratch& scratch)
     : keys_kernel_(device.kernel("tree/keys")), hierarchy_(device.kernel("tree/hierarchy")),
       bounds_(device.kernel("tree/bounds", {climbConstant(device)})),
-      sort_(device, fmt::format("{}.sort", name), max_count),
-      keys_(device.array<uint32_t>(fmt::format("{}.keys", name), max_count)),
+      sort_(device, fmt::format("{}.sort", name), max_count, 1, {}, scratch),
+      keys_(device.array<uint32_t>(fmt::format("{}.keys", name), max_count, scratch)),
       order_(device.array<uint32_t>(fmt::format("{}.order", name), max_count)),
       nodes_(device.texelArray<gpu::TreeNode>(fmt::format("{}.nodes", name), max_count)),
       leaf_parents_(device.array<uint32_t>(fmt::format("{}.leaf_parents", name), max_count)),
       node_parents_(device.array<uint32_t>(fmt::format("{}.node_parents", name), max_count)),
-      arrivals_(device.array<uint32_t>(fmt::format("{}.arrivals", name), max_count))
+      arrivals_(device.array<uint32_t>(fmt::format("{}.arrivals", name), max_count, scratch))
 {
 }
 

@@ -14,7 +14,7 @@ class Tree
 {
 public:
     /// @param name of its buffers, @param max_count spheres at most
-    Tree(const Device& device, std::string_view name, uint32_t max_count);
+    Tree(const Device& device, std::string_view name, uint32_t max_count, const Scratch& scratch = {});
 
     /// Builds the tree over spheres[0, size.count).
     /// @param spheres vec4[max_count]: centre and radius, metres; points have radius 0
@@ -25,7 +25,7 @@ public:
     /// The same tree after the spheres have moved a little: it holds them all, if no longer in the order of their keys.
     void refit(Recorder& rec, const Buffer& spheres, const Buffer& size) const;
 
-    const Buffer& keys() const { return keys_; }   // uint[count]
+    const Buffer& keys() const { return keys_; }   // uint[count], in scratch memory
     const Buffer& nodes() const { return nodes_; } // gpu::TreeNode[count - 1]
     const Buffer& order() const { return order_; } // uint[count]: which sphere is the i-th of the sorted ones
     const Buffer& leafParents() const

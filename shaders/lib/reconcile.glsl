@@ -9,7 +9,20 @@
 // which find the edges of shadows that move. With less, frames follow their own noise; with more, light lags.
 const float kChance = 2.0, kNearChance = 3.0;
 const int kReach = 3; // pixels to each side: fewer tell less, more blur what has changed
-const int kFarStep = 8; // pixels: of as many that lie further apart, which show what has changed everywhere
+const int kFarStep = 8; // pixels: of those that lie further apart, which show what has changed everywhere
+
+// Places that tell of a pixel's surroundings: all next to it, then every second one up to kReach along either axis, then as many
+// far from it. All pixels up to kReach would take three times as long.
+const int kNearPlaces = 9, kWidePlaces = 16, kPlaces = kNearPlaces + 2 * kWidePlaces;
+ivec2 placeOf(int k)
+{
+    if (k < kNearPlaces)
+        return ivec2(k % 3, k / 3) - 1;
+    ivec2 place = ivec2(k % 4, k / 4 % 4) * 2 - kReach;
+    return k < kNearPlaces + kWidePlaces ? place : place * kFarStep;
+}
+
+bool isNear(ivec2 offset) { return all(lessThanEqual(abs(offset), ivec2(1))); }
 // Noise of a frame, as a part of its light, for as long as there are too few to tell.
 const float kLikelyNoise = 0.25;
 // What part of its noise a pixel shares with those around it. Irradiance samples and photons serve many pixels at once.
@@ -78,34 +91,32 @@ void addPixel(inout Surroundings s, int pixel)
     addPair(s.caustics, second.zw);
 }
 
-/// Adds the pixels of the same surface at whole multiples of `step_` from `here`.
-void addAround(inout Surroundings s, ivec2 here, int reach, int step_, uint pixel)
-{
-    ivec2 size = ivec2(params.width, params.point_count / params.width);
-    SurfaceGuide guide = guides[pixel];
-    vec3 normal = octahedralToUnit(unpackSnorm4x8(guide.normals).xy);
-    float footprint = footprintAt(motions[pixel]);
-    for (int y = -reach; y <= reach; ++y)
-        for (int x = -reach; x <= reach; ++x)
-        {
-            ivec2 place = here + step_ * ivec2(x, y);
-            if (any(lessThan(place, ivec2(0))) || any(greaterThanEqual(place, size)))
-                continue;
-            int other = place.y * size.x + place.x;
-            SurfaceGuide g = guides[other];
-            if (sameSurface(guide, normal, uvec4(floatBitsToUint(g.position), g.normals), footprint))
-                addPixel(s, other);
-        }
-}
-
 /// Compares what the surface shows around the pixel with what it showed.
 void reconcile(inout Past past, uint pixel)
 {
+    ivec2 size = ivec2(params.width, params.point_count / params.width);
     ivec2 here = ivec2(pixel % params.width, pixel / params.width);
+    SurfaceGuide guide = guides[pixel];
+    vec3 normal = octahedralToUnit(unpackSnorm4x8(guide.normals).xy);
+    float footprint = footprintAt(motions[pixel]);
     Surroundings far = Surroundings(kNoPairs, kNoPairs, kNoPairs, kNoPairs), wide = far, near = far;
-    addAround(far, here, kReach, kFarStep, pixel);
-    addAround(wide, here, kReach, 1, pixel);
-    addAround(near, here, 1, 1, pixel);
+    for (int k = 0; k < kPlaces; ++k)
+    {
+        ivec2 offset = placeOf(k), place = here + offset;
+        bool twice = k >= kNearPlaces && isNear(offset);
+        if (twice || any(lessThan(place, ivec2(0))) || any(greaterThanEqual(place, size)))
+            continue;
+        int other = place.y * size.x + place.x;
+        SurfaceGuide g = guides[other];
+        if (!sameSurface(guide, normal, uvec4(floatBitsToUint(g.position), g.normals), footprint))
+            continue;
+        if (k >= kNearPlaces + kWidePlaces)
+            addPixel(far, other);
+        else
+            addPixel(wide, other);
+        if (k < kNearPlaces)
+            addPixel(near, other);
+    }
     reconcileTerm(past.direct, far.direct, wide.direct, near.direct, kOwnRays);
     reconcileTerm(past.indirect, far.indirect, wide.indirect, near.indirect, kSharedSamples);
     reconcileTerm(past.glossy, far.glossy, wide.glossy, near.glossy, kOwnRays);

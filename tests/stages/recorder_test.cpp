@@ -248,6 +248,71 @@ TEST_F(RecorderTest, OrdersReadsOfTheSceneAsOfAnyOtherBuffer)
         EXPECT_FLOAT_EQ(device().download<gpu::Hit>(hits[hit], 1)[0].t, t) << "hit " << hit;
 }
 
+TEST_F(RecorderTest, WritesOfAnySizeTakeOneBarrierAndNoMemoryOnceTheyHaveBeen)
+{
+    constexpr uint32_t kWords = 1'000'000, kBefore = 3;
+    const Buffer to = device().array<uint32_t>("test.words", kBefore + kWords + 1);
+    std::vector<uint32_t> words(kWords);
+    Recorder rec(device());
+    uint64_t allocations = 0;
+    for (uint32_t submission = 0; submission < 3; ++submission)
+    {
+        rec.begin();
+        rec.fill(to, 7);
+        const uint32_t barriers = rec.barrierCount();
+        std::iota(words.begin(), words.end(), submission);
+        rec.write(to, kBefore * sizeof(uint32_t), std::as_bytes(std::span(words)));
+        EXPECT_EQ(rec.barrierCount(), barriers + 1);
+        std::ranges::fill(words, 0u); // has been taken
+        const std::vector<uint32_t> next(20000, 9);
+        rec.write(to, kBefore * sizeof(uint32_t), std::as_bytes(std::span(next)));
+        rec.submitAndWait();
+        if (submission == 2)
+        {
+            EXPECT_EQ(device().allocationCount(), allocations);
+        }
+        const auto found = device().download<uint32_t>(to, kBefore + kWords + 1);
+        uint32_t wrong = found.front() != 7 || found.back() != 7;
+        for (uint32_t i = 0; i < kWords; ++i)
+            wrong += found[kBefore + i] != (i < next.size() ? 9 : submission + i);
+        EXPECT_EQ(wrong, 0u);
+        if (submission == 1)
+            allocations = device().allocationCount();
+    }
+}
+
+TEST_F(RecorderTest, OrdersStagesThatShareMemory)
+{
+    constexpr uint32_t kTwo = 0x40000000, kThree = 0x40400000; // floats
+    const ScratchPool pool;
+    const Scratch first = pool.stage(), second = pool.stage();
+    const Buffer a = device().array<gpu::vec3>("test.a", kElements, first);
+    const Buffer a_too = device().array<gpu::vec3>("test.a_too", kElements, first);
+    const uint64_t bytes = device().allocatedBytes();
+    const Buffer b = device().array<gpu::vec3>("test.b", kElements / 2, second);
+    const Buffer b_too = device().array<gpu::vec3>("test.b_too", kElements, second);
+    EXPECT_EQ(device().allocatedBytes(), bytes);
+    EXPECT_FALSE(a.range().overlaps(a_too.range()));
+    EXPECT_FALSE(b.range().overlaps(b_too.range()));
+    EXPECT_TRUE(a.range().overlaps(b.range()));
+
+    const Buffer sum = zeros();
+    submit(
+        [&](Recorder& rec)
+        {
+            rec.clear(non_finite_);
+            for (int i = 0; i < 10; ++i)
+            {
+                rec.fill(a, kTwo);
+                add(rec, a, sum);
+                rec.fill(b, kThree); // where a was
+                rec.fill(b_too, kThree);
+                add(rec, b_too, sum);
+            }
+        });
+    expectAll(sum, 50);
+}
+
 TEST_F(RecorderTest, OrdersOneSubmissionAfterTheOther)
 {
     const Buffer a = zeros(), b = filled(1);

@@ -223,4 +223,54 @@ TEST_F(Measured, RaysAreCountedByScopeAndKind)
     EXPECT_TRUE(entries[1].any_hit);
     EXPECT_EQ(entries[1].ray_count, 3 * kWidth * kHeight); // the floor fills the picture
 }
+
+/// Memory that a renderer of mode gi takes for pictures of 1920 x 1080, bytes.
+uint64_t rendererBytes(const Device& device, const SceneGpu& scene)
+{
+    const uint64_t before = device.allocatedBytes();
+    const Renderer renderer(device, scene, Mode::kGi, 1920, 1080);
+    return device.allocatedBytes() - before;
+}
+
+class RendererMemory : public GpuTest
+{
+};
+
+TEST_F(RendererMemory, IsLessThanAGibibyteForAPictureOf1080Lines)
+{
+    SceneBuilder builder;
+    builder.box({-1, 0, -1}, {1, 2, 1}, builder.material(lambert(0.6)), true);
+    builder.quad({-0.3f, 1.99f, -0.3f}, {0.6f, 0, 0}, {0, 0, 0.6f}, builder.material(emitter(8)));
+    builder.sphere({0, 0.5f, 0}, 0.3f, 12, true,
+                   builder.material({{"pbrMetallicRoughness", {{"metallicFactor", 1}, {"roughnessFactor", 0.4}}}}));
+    const auto scene = load(builder.compile());
+    ASSERT_FALSE(scene->hasSmoothLayers()); // which take two points a pixel
+    EXPECT_LE(rendererBytes(device(), *scene), uint64_t(1000) << 20);
+}
+
+TEST_F(RendererMemory, IsAllocatedAndPipelinesAreBuiltBeforeTheThirdFrame)
+{
+    SceneBuilder builder;
+    const auto scene = load(room(builder, true));
+    const Settings settings = *presetSettings("preview");
+    Renderer renderer(device(), *scene, Mode::kGi, kWidth, kHeight, settings);
+    Recorder rec(device());
+    uint64_t allocations = 0, pipelines = 0;
+    for (uint32_t frame = 0; frame < 8; ++frame)
+    {
+        Camera camera = kCamera;
+        camera.position.x += 0.01f * float(std::min(frame, 5u)); // stands at last
+        rec.begin(scene->descriptorSet());
+        renderer.record(rec, camera, settings, 0);
+        renderer.display(rec, settings, false);
+        rec.submitAndWait();
+        if (frame == 1)
+        {
+            allocations = device().allocationCount();
+            pipelines = device().pipelineCount();
+        }
+    }
+    EXPECT_EQ(device().allocationCount(), allocations);
+    EXPECT_EQ(device().pipelineCount(), pipelines);
+}
 } // namespace

@@ -34,11 +34,10 @@ protected:
         const auto path = builder.compile();
         const auto scene = load(path);
         const ShadingPoints shown(device(), *scene, path, camera, kWidth, kHeight);
-        const ViewScaleStage stage(device(), *scene);
+        ViewScaleStage stage(device(), *scene);
         submit(*scene, [&](Recorder& rec)
                { stage.record(rec, shown.gpu->points, kWidth * kHeight, cameraParams(camera, kWidth, kHeight)); });
         const gpu::ViewScale scale = contents<gpu::ViewScale>(scene->viewScale(), 1)[0];
-        EXPECT_EQ(stage.lastDistance(), scale.distance);
         EXPECT_EQ(length2(Double3(scale.focus) - Double3(camera.position)), 0);
         if (points)
             *points = shown.points;
@@ -69,6 +68,28 @@ TEST_F(ViewScales, TakeNoNoticeOfWhatIsNotInView)
                       .vertical_fov = 0.9f,
                       .orthographic_height = 0};
     EXPECT_EQ(measured(down, 20000).distance, measured(down, 0).distance);
+}
+
+TEST_F(ViewScales, AreReadBackFromTheFrameThatHasEndedWhileTheLastOneMayBeInFlight)
+{
+    SceneBuilder builder;
+    builder.floor(3, 0, builder.material(lambert(0.7)));
+    const auto path = builder.compile();
+    const auto scene = load(path);
+    const ShadingPoints shown(device(), *scene, path, camera(), kWidth, kHeight);
+    ViewScaleStage stage(device(), *scene);
+    std::vector<float> distances;
+    for (uint32_t frame = 0; frame < 6; ++frame)
+    {
+        submit(*scene,
+               [&](Recorder& rec) {
+                   stage.record(rec, shown.gpu->points, kWidth * kHeight,
+                                cameraParams(camera(float(frame + 1)), kWidth, kHeight));
+               });
+        EXPECT_EQ(stage.lastDistance(), frame < kFramesInFlight ? 0 : distances[frame - kFramesInFlight]);
+        distances.push_back(contents<gpu::ViewScale>(scene->viewScale(), 1)[0].distance);
+    }
+    EXPECT_NE(distances[0], distances[1]);
 }
 
 TEST_F(ViewScales, OfParallelRaysAreThePicturesSize)
