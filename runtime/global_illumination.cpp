@@ -118,7 +118,7 @@ GlobalIllumination::GlobalIllumination(const Device& device, const SceneGpu& sce
     if (filters || settings.history_frames > 0 || settings.antialias_frames > 0)
         signals_.emplace(device, scene, width * height, signals_scratch_);
     if (settings.history_frames > 0)
-        history_.emplace(device, width * height);
+        history_.emplace(device, width * height, signals_scratch_);
     if (filters)
         denoise_.emplace(device, width * height, signals_scratch_);
 }

@@ -5,10 +5,10 @@
 
 #include <cmath>
 
-HistoryStage::HistoryStage(const Device& device, uint32_t max_pixels)
+HistoryStage::HistoryStage(const Device& device, uint32_t max_pixels, const Scratch& scratch)
     : compare_(device.kernel("history/compare")), blend_(device.kernel("history/blend")),
       blend_changed_(device.kernel("history/blend", {{"kLightChanged", 1}})),
-      compared_(device.texelArray<gpu::PixelPairs>("history.compared", max_pixels)),
+      compared_(device.texelArray<gpu::PixelPairs>("history.compared", max_pixels, scratch)),
       pixels_{device.texelArray<gpu::PixelHistory>("history.pixels_a", max_pixels),
               device.texelArray<gpu::PixelHistory>("history.pixels_b", max_pixels)}
 {

@@ -6,7 +6,7 @@
 class HistoryStage
 {
 public:
-    HistoryStage(const Device& device, uint32_t max_pixels);
+    HistoryStage(const Device& device, uint32_t max_pixels, const Scratch& scratch = {});
 
     struct Input
     {
