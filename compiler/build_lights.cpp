@@ -158,7 +158,8 @@ bool isBeam(const Candidate& c)
 
 /// The weight by which each light is picked: its power, except that directional and environment lights beside local ones get
 /// at most half of all samples. Their power is what falls on a disc as wide as the scene: indoors nearly all of that hits the
-/// roof, and the local lights that light the room would get next to no samples.
+/// roof, and the local lights that light the room would get next to no samples. What is dark at rest and may shine later is
+/// picked like an average light.
 std::vector<double> sampleShares(const std::vector<Candidate>& candidates)
 {
     constexpr double kMostBeams = 0.5;
@@ -169,11 +170,13 @@ std::vector<double> sampleShares(const std::vector<Candidate>& candidates)
     for (const Candidate& c : candidates)
         (isBeam(c) ? beams : lamps) += c.power / total;
     const bool capped = beams > kMostBeams && lamps > 0;
+    const double average = 1 / double(candidates.size());
+    const double dark = average * double(std::ranges::count(candidates, 0.0, &Candidate::power));
     std::vector<double> shares;
     for (const Candidate& c : candidates)
     {
         const double group = isBeam(c) ? kMostBeams / beams : (1 - kMostBeams) / lamps;
-        shares.push_back(c.power / total * (capped ? group : 1));
+        shares.push_back(c.power > 0 ? c.power / total * (capped ? group : 1) * (1 - dark) : average);
     }
     return shares;
 }

@@ -220,6 +220,20 @@ TEST(BuildLights, ASunLeavesHalfOfTheSamplesToLamps)
     EXPECT_LT(buildLights(scene).lights.at(0).pmf, 0.01);
 }
 
+TEST(BuildLights, ALightThatMayShineLaterIsPickedLikeAnAverageOne)
+{
+    SceneData scene = withPunctual({.kind = gpu::kLightPoint, .intensity = {3, 3, 3}});
+    scene.lights.push_back({.kind = gpu::kLightPoint, .intensity = {1, 1, 1}});
+    scene.lights.push_back({.kind = gpu::kLightPoint, .intensity = {}});
+    scene.lights.push_back({.kind = gpu::kLightPoint, .intensity = {}});
+    scene.lights.back().moves = true;
+    const LightTables tables = buildLights(scene); // the third, dark for ever, is left out
+    ASSERT_EQ(tables.lights.size(), 3u);
+    EXPECT_NEAR(tables.lights[0].pmf, 0.5, 1e-6);
+    EXPECT_NEAR(tables.lights[1].pmf, 1.0 / 6, 1e-6);
+    EXPECT_NEAR(tables.lights[2].pmf, 1.0 / 3, 1e-6);
+}
+
 TEST(CausticTargets, EnclosesSmoothMetalAndSolidGlassOnly)
 {
     SceneData scene = darkScene();
