@@ -27,8 +27,7 @@ void HistoryStage::record(Recorder& rec, const Input& in)
                                     .seed = traceSeed(camera.seed, in.frame.number, 0),
                                     .pixel_angle = camera.orthographic ? 0 : pixelSide(camera),
                                     .pixel_side = camera.orthographic ? pixelSide(camera) : 0,
-                                    .moves = in.signals.displacements.size() >=
-                                             camera.width * camera.height * sizeof(gpu::vec3),
+                                    .moves = in.signals.moves,
                                     .least = range.least,
                                     .most = range.most};
     const bool changed = in.frame.light_range.has_value();

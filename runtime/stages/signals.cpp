@@ -41,6 +41,7 @@ SignalBuffers SignalsStage::record(Recorder& rec, const FrameInfo& frame, const 
             .last_guides = guides_[1 - now_],
             .motions = motions_,
             .displacements = displacements_,
+            .moves = scene_.canMove(),
             .direct = direct_,
             .glossy = glossy_};
 }

@@ -11,7 +11,8 @@ struct SignalBuffers
     const Buffer& guides;        // gpu::SurfaceGuide[pixel_count], with a texel view
     const Buffer& last_guides;   // the same of the last record()
     const Buffer& motions;       // gpu::Motion[pixel_count]
-    const Buffer& displacements; // vec3[pixel_count], metres that surfaces have moved by since; one where none can move
+    const Buffer& displacements; // vec3[pixel_count], metres that surfaces have moved by since, where `moves`
+    bool moves;                  // surfaces can move
     const Buffer& direct;        // gpu::LightSignal[pixel_count], with a texel view
     const Buffer& glossy;        // likewise
 };

@@ -118,6 +118,23 @@ TEST_F(RememberingSequence, HasTheSameBytesInPieces)
     EXPECT_EQ(frame("still", "f00.exr"), frame("still", "picture.exr"));
 }
 
+/// The player's scene keeps its pose from part to part: none of it may be seen in the next one.
+TEST_F(RememberingSequence, OfAnAnimationHasTheSameBytesInPieces)
+{
+    ASSERT_EQ(runProgram(LUMICUT_SCENES, quoted("") + " lamp").exit_code, 0);
+    ASSERT_EQ(runProgram(LUMICUT_COMPILE, "-q " + quoted("lamp.glb")).exit_code, 0);
+    options_.package = folder_ / "lamp.lumi";
+    options_.path.clear();
+    auto opened = openScene(options_, {}, statistics_);
+    ASSERT_TRUE(opened) << opened.error().message;
+    opened_.emplace(std::move(*opened));
+    render("whole", 0, 7);
+    EXPECT_NE(frame("whole", "f00.exr"), frame("whole", "f07.exr"));
+    for (const uint32_t first : {6u, 0u, 2u, 4u})
+        render("pieces", first, first + 1);
+    expectWhole("pieces");
+}
+
 /// Pixels of the back wall of the box, a white Lambertian 2.45 m before the camera: by their normals.
 void expectBackWall(std::span<const gpu::LayerSums> layers, uint32_t frame_count, uint32_t width, uint32_t height)
 {

@@ -24,14 +24,24 @@ int write(const std::filesystem::path& folder, const std::string& name, const Gl
     return int(ExitCode::kOk);
 }
 
-int run(const std::string& folder, const std::vector<std::string>& names, uint32_t terrain_triangles)
+/// Scenes of a size, in place of those with names; 0: none.
+struct Sizes
+{
+    uint32_t terrain = 0, boxes = 0, tube = 0;
+};
+
+int run(const std::string& folder, const std::vector<std::string>& names, const Sizes& sizes)
 {
     std::error_code problem;
     std::filesystem::create_directories(folder, problem);
     if (problem)
         return fail(folder, {ExitCode::kIo, fmt::format("The folder cannot be created: {}.", problem.message())});
-    if (terrain_triangles != 0)
-        return write(folder, "terrain", terrainScene(terrain_triangles));
+    if (sizes.terrain != 0)
+        return write(folder, "terrain", terrainScene(sizes.terrain));
+    if (sizes.boxes != 0)
+        return write(folder, "boxes", boxesScene(sizes.boxes));
+    if (sizes.tube != 0)
+        return write(folder, "tube", tubeScene(sizes.tube));
     for (const Scene& scene : allScenes())
     {
         if (!names.empty() && std::find(names.begin(), names.end(), scene.name) == names.end())
@@ -64,11 +74,21 @@ int main(int argc, char** argv)
     app.footer(list);
     CLI::Option* const some =
         app.add_option("NAME", names, "which scenes, of those below (all)")->check(CLI::IsMember(known));
-    uint32_t terrain_triangles = 0;
-    app.add_option("--terrain", terrain_triangles,
-                   "instead write terrain.glb, a landscape of about this many triangles")
-        ->check(CLI::Range(1000, 50'000'000))
-        ->excludes(some);
+    Sizes sizes;
+    CLI::Option* const terrain = app.add_option("--terrain", sizes.terrain,
+                                                "instead write terrain.glb, a landscape of about this many triangles")
+                                     ->check(CLI::Range(1000, 50'000'000))
+                                     ->excludes(some);
+    CLI::Option* const boxes =
+        app.add_option("--boxes", sizes.boxes, "instead write boxes.glb, this many boxes that move")
+            ->check(CLI::Range(1, 1'000'000))
+            ->excludes(some)
+            ->excludes(terrain);
+    app.add_option("--tube", sizes.tube, "instead write tube.glb, a skinned tube of about this many triangles")
+        ->check(CLI::Range(128, 10'000'000))
+        ->excludes(some)
+        ->excludes(terrain)
+        ->excludes(boxes);
     try
     {
         app.parse(argc, argv);
@@ -77,5 +97,5 @@ int main(int argc, char** argv)
     {
         return app.exit(problem) == 0 ? int(ExitCode::kOk) : int(ExitCode::kUsage);
     }
-    return run(folder, names, terrain_triangles);
+    return run(folder, names, sizes);
 }

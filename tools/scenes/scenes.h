@@ -68,5 +68,11 @@ GltfWriter walkerScene();
 /// A mirror ball that rolls through the caustic of a glass ball under a small lamp.
 GltfWriter ballScene();
 
+/// `count` boxes that travel and turn over a ground. Not among allScenes().
+GltfWriter boxesScene(uint32_t count);
+
+/// A tube of about `triangles` triangles that 32 joints bend. Not among allScenes().
+GltfWriter tubeScene(uint32_t triangles);
+
 /// About `triangles` triangles, at least 1000: rolling ground with boulders. Not among allScenes().
 GltfWriter terrainScene(uint32_t triangles);
