@@ -13,7 +13,11 @@ constexpr float kSide = 80; // metres
 /// The ground, a sun and a view of both.
 void addSurroundings(GltfWriter& gltf, uint32_t material)
 {
-    gltf.add("ground", sheet(1, 1, {kSide, kSide}, [](float s, float t) { return Vec3{(s - 0.5f) * kSide, 0, (0.5f - t) * kSide}; }),
+    gltf.add("ground",
+             sheet(1, 1, {kSide, kSide},
+                   [](float s, float t) {
+                       return Vec3{(s - 0.5f) * kSide, 0, (0.5f - t) * kSide};
+                   }),
              material);
     gltf.addSun("sun", {-0.3f, -1, -0.2f}, {1, 1, 1}, 5);
     gltf.addCamera("view", {0, 6, 26}, {0, 3, 0}, 0.8f);
@@ -31,7 +35,8 @@ GltfWriter boxesScene(uint32_t count)
     {
         // Incommensurable steps spread the boxes evenly and never put two in one place (Roberts 2018).
         const auto part = [&](double step) { return float(std::fmod(step * (i + 1), 1.0)); };
-        const Vec3 at{(part(0.8191725134) - 0.5f) * kSide / 2, 0.3f + 8 * part(0.6710436067), (part(0.5497004779) - 0.5f) * kSide / 2};
+        const Vec3 at{(part(0.8191725134) - 0.5f) * kSide / 2, 0.3f + 8 * part(0.6710436067),
+                      (part(0.5497004779) - 0.5f) * kSide / 2};
         const Vec3 to = at + Vec3{part(0.7548776662) - 0.5f, part(0.5698402910), part(0.6180339887) - 0.5f} * 2;
         const uint32_t node = gltf.addNode("box", mesh, at);
         gltf.animate(node, "translation", {0, 1, 2}, {at.x, at.y, at.z, to.x, to.y, to.z, at.x, at.y, at.z});
