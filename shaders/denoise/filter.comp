@@ -5,10 +5,11 @@
 #include "shaders/lib/signal.glsl"
 #include "shaders/lib/tile.glsl"
 
-// One pass of an edge-avoiding wavelet filter (Dammertz et al. 2010): each pixel becomes the weighted mean of nine, `step_`
-// pixels apart. Light and reflectance get the same weights, so that their ratio is the light around, textures left out. The
-// first pass estimates the noise where no history tells it; where it is known, passes take a difference in brightness beyond the noise for one in the scene (Schied
-// et al. 2017, "Spatiotemporal Variance-Guided Filtering"). One thread per pixel.
+// One pass of an edge-avoiding wavelet filter (Dammertz et al. 2010) in a form that keeps energy: light flows between pixels
+// `step_` pixels apart, as much into one as out of the other, so that a rare bright sample is spread and none of it is lost.
+// What evens out is light over reflectance, so that textures stay. The first pass estimates the noise where no history tells
+// it; where it is known, passes take a difference in brightness beyond the noise for one in the scene (Schied et al. 2017,
+// "Spatiotemporal Variance-Guided Filtering"). One thread per pixel.
 
 layout(local_size_x = kRaysGroupSize) in;
 layout(push_constant, scalar) uniform Params { DenoiseParams params; };
@@ -22,6 +23,7 @@ const float kUnseen = 0.01;     // of the brightness: noise of which nothing is 
 const float kBeyondNoise = 2.0; // standard errors
 const float kWider = 0.5;   // of a lobe's width: what makes another lobe of it
 const float kOffPlane = 0.15; // sine of the angle to the surface at which another place is no more part of it
+const float kAllWeights = 1.0 + 4.0 * 0.70710678 + 4.0 * 0.5; // of nine pixels on an even wall: then the pass is their mean
 
 struct Guide
 {
@@ -47,21 +49,38 @@ float edgeStoppingWeight(Guide a, Guide b, float a_lobe, float b_lobe, float pix
     return exp(-square(off_plane / kOffPlane) - square(wider / kWider) - bend2 / (2.0 * square(kBend * lobe)));
 }
 
+/// Light flows into and out of the pixel.
+bool flows(Signal s)
+{
+    float bright = brightness(s);
+    bool finite = !isnan(bright) && !isinf(bright); // one bad sample must not spread
+    return s.lobe > 0.0 && finite && (s.error < 0.0 || s.error > kUnseen * bright);
+}
+
+/// The same for both pixels. 1: differences in brightness are no more than noise, or the noise of both is unknown.
+float noiseWeight(Signal a, Signal b)
+{
+    if (max(a.error, b.error) < 0.0)
+        return 1.0;
+    float noise = length(max(vec2(a.error, b.error), vec2(0.0)));
+    return exp(-abs(brightness(a) - brightness(b)) / (kBeyondNoise * noise + 1e-20));
+}
+
 void main()
 {
     uint pixel = tiledPixel(gl_GlobalInvocationID.x, params.width, params.point_count);
     if (pixel >= params.point_count)
         return;
     Signal center = unpackSignal(texelFetch(Signals, int(pixel)));
-    if (center.lobe == 0.0 || (center.error >= 0.0 && center.error <= kUnseen * brightness(center)))
+    if (!flows(center))
     {
         filtered[pixel] = packSignal(center);
         return;
     }
     Guide guide = loadGuide(pixel);
-    float bright = brightness(center), weights = 1.0, squares = 1.0;
-    float mean = bright, mean2 = bright * bright, variance = square(max(center.error, 0.0));
-    Signal sum = center;
+    float bright = brightness(center), weights = 1.0, mean = bright, mean2 = bright * bright;
+    float left = 1.0, parts2 = 0.0, variance = 0.0; // parts of the center's brightness and of others' that make up the result
+    vec3 light = center.light;
     ivec2 size = ivec2(params.width, params.point_count / params.width), at = ivec2(pixel % params.width, pixel / params.width);
     for (int k = 0; k < 9; ++k)
     {
@@ -70,26 +89,22 @@ void main()
             continue;
         uint neighbour = uint(place.y * size.x + place.x);
         Signal other = unpackSignal(texelFetch(Signals, int(neighbour)));
+        if (!flows(other))
+            continue;
         float steps2 = dot(offset, offset), other_bright = brightness(other);
-        if (other.lobe == 0.0 || isnan(other_bright) || isinf(other_bright))
-            continue; // one bad sample must not spread
         float weight = exp2(-0.5 * steps2) * edgeStoppingWeight(guide, loadGuide(neighbour), center.lobe, other.lobe,
-                                                      float(params.step_) * sqrt(steps2));
-        if (params.step_ > 1u || center.error >= 0.0)
-            weight *= exp(-abs(other_bright - bright) /
-                          (kBeyondNoise * sqrt(square(center.error) + square(max(other.error, 0.0))) + 1e-20));
-        sum.light += weight * other.light;
-        sum.reflectance += weight * other.reflectance;
+                                                      float(params.step_) * sqrt(steps2)) * noiseWeight(center, other);
+        vec3 passed = weight / kAllWeights * min(center.reflectance, other.reflectance); // out of here and out of there
+        light += passed * (other.light / other.reflectance - center.light / center.reflectance);
+        float part = weight / kAllWeights * min(1.0, luminance(other.reflectance) / luminance(center.reflectance));
+        left -= part;
+        parts2 += square(part);
+        variance += square(part * max(other.error, 0.0));
         weights += weight;
-        squares += weight * weight;
         mean += weight * other_bright;
         mean2 += weight * square(other_bright);
-        variance += square(weight * max(other.error, 0.0));
     }
-    sum.light /= weights;
-    sum.reflectance /= weights;
-    if (params.step_ == 1u && center.error < 0.0)
-        variance = max(0.0, mean2 / weights - square(mean / weights)) * squares;
-    sum.error = sqrt(variance) / weights;
-    filtered[pixel] = packSignal(sum);
+    variance = center.error < 0.0 ? max(0.0, mean2 / weights - square(mean / weights)) * (parts2 + square(left))
+                                  : variance + square(left * center.error);
+    filtered[pixel] = packSignal(Signal(max(light, vec3(0.0)), center.reflectance, center.lobe, sqrt(variance)));
 }
