@@ -21,10 +21,8 @@ constexpr uint32_t kRimProbes = 12;
 /// distribution leaves few photons elsewhere.
 constexpr uint32_t kWarmUpRounds = 4;
 
-/// Scratch memory of the direct light at a point, and of a pixel from its signals on (signals, motion, compared and filtered
-/// light, picture): of which no stage needs more; and what aligning their buffers may cost.
-constexpr uint64_t kDirectBytes =
-    sizeof(gpu::Ray) + sizeof(gpu::ShadowRay) + sizeof(gpu::EmitterRay) + sizeof(gpu::Hit);
+/// Scratch memory of a pixel from its signals on (signals, motion, compared and filtered light, picture): no stage but direct
+/// light needs more; and what aligning their buffers may cost.
 constexpr uint64_t kSignalBytes =
     4 * sizeof(gpu::LightSignal) + sizeof(gpu::Motion) + sizeof(gpu::PixelPairs) + sizeof(gpu::vec3);
 constexpr uint64_t kPadding = 1 << 16;
@@ -97,10 +95,13 @@ GlobalIllumination::GlobalIllumination(const Device& device, const SceneGpu& sce
       has_caustic_targets_(scene.info().caustic_target_count > 0),
       has_mirrors_(has_caustic_targets_ || scene.hasFeature(gpu::kFeatureTransmission | gpu::kFeatureThin)),
       point_count_(width * height * (splitsMirrors(device, scene, width * height) ? 2 : 1)),
-      scratch_(std::max(kDirectBytes * point_count_, kSignalBytes * width * height) + kPadding),
+      scratch_(std::max(DirectStage::scratchBytes(scene, width, height, point_count_ / (width * height)),
+                        kSignalBytes * width * height) +
+               kPadding),
       light_(device, point_count_),
       primary_(device, scene, width * height, point_count_ > width * height, scratch_.stage()),
-      view_scale_(device, scene), direct_(device, scene, point_count_, scratch_.stage()),
+      view_scale_(device, scene),
+      direct_(device, scene, width, height, point_count_ / (width * height), scratch_.stage()),
       map_scratch_(scratch_.stage()), caustic_scratch_(scratch_.stage()), signals_scratch_(scratch_.stage()),
       photons_(device, scene, PhotonKind::kGlobal, settings.photon_count,
                photonCapacity(device, settings.photon_capacity), map_scratch_),

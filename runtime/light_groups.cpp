@@ -2,6 +2,7 @@
 
 #include "format/alias_table.h"
 
+#include <map>
 #include <numeric>
 
 namespace
@@ -12,31 +13,43 @@ LightKind kindOf(const LightProbability& light)
            : light.isPunctual() ? LightKind::kDirectional
                                 : LightKind::kEnvironment;
 }
+
+void addCluster(LightGroups& result, std::span<const LightProbability> lights, const std::vector<uint32_t>& members)
+{
+    std::vector<double> weights;
+    for (const uint32_t light : members)
+        weights.push_back(lights[light].pmf);
+    const double share = std::accumulate(weights.begin(), weights.end(), 0.0);
+    result.clusters.push_back(
+        {.first_pick = uint32_t(result.picks.size()), .pick_count = uint32_t(members.size()), .share = float(share)});
+    const auto table = buildAliasTable(weights);
+    for (size_t i = 0; i < members.size(); ++i)
+    {
+        result.picks.push_back({members[i], table[i].threshold, members[table[i].alias]});
+        result.densities[members[i]] = float(1 / share);
+    }
+}
 } // namespace
 
 LightGroups groupLights(std::span<const LightProbability> lights)
 {
-    LightGroups result;
+    LightGroups result{.groups = {}, .clusters = {}, .picks = {}, .densities = std::vector<float>(lights.size())};
     for (const LightKind kind : {LightKind::kDirectional, LightKind::kEnvironment, LightKind::kLocal})
     {
-        std::vector<uint32_t> members;
-        std::vector<double> weights;
+        std::map<uint32_t, std::vector<uint32_t>> clusters;
         for (uint32_t i = 0; i < lights.size(); ++i)
             if (kindOf(lights[i]) == kind && lights[i].pmf > 0)
-            {
-                members.push_back(i);
-                weights.push_back(lights[i].pmf);
-            }
-        if (members.empty())
+                clusters[lights[i].cluster].push_back(i);
+        if (clusters.empty())
             continue;
-        result.groups.push_back({.kind = kind,
-                                 .first_pick = uint32_t(result.picks.size()),
-                                 .pick_count = uint32_t(members.size()),
-                                 .share = float(std::accumulate(weights.begin(), weights.end(), 0.0)),
-                                 .one_place = members.size() == 1 && lights[members[0]].isPunctual()});
-        const auto table = buildAliasTable(weights);
-        for (size_t i = 0; i < members.size(); ++i)
-            result.picks.push_back({members[i], table[i].threshold, members[table[i].alias]});
+        const std::vector<uint32_t>& first = clusters.begin()->second;
+        result.groups.push_back(
+            {.kind = kind,
+             .first_cluster = uint32_t(result.clusters.size()),
+             .cluster_count = uint32_t(clusters.size()),
+             .one_place = clusters.size() == 1 && first.size() == 1 && lights[first[0]].isPunctual()});
+        for (const auto& [number, members] : clusters)
+            addCluster(result, lights, members);
     }
     return result;
 }

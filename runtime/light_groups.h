@@ -1,4 +1,5 @@
-// Lights grouped into directional, environment and local ones, each group with an alias table: direct light samples every group.
+// Lights grouped into directional, environment and local ones, each group with clusters that have alias tables: direct light samples
+// every group.
 #pragma once
 #include "runtime/scene_gpu.h"
 #include "shaders/direct/direct.h"
@@ -15,17 +16,18 @@ enum class LightKind
 struct LightGroup
 {
     LightKind kind;
-    uint32_t first_pick; // its part of LightGroups::picks
-    uint32_t pick_count; // lights
-    float share;         // fraction of all lights' pmf, > 0
-    bool one_place;      // a single punctual light: each sample of it is the same
+    uint32_t first_cluster; // its part of LightGroups::clusters
+    uint32_t cluster_count; // 1, but for local lights
+    bool one_place;         // a single punctual light: each sample of it is the same
 };
 
 struct LightGroups
 {
     std::vector<LightGroup> groups; // that have a light: none to three
+    std::vector<gpu::LightCluster> clusters;
     std::vector<gpu::LightPick> picks;
+    std::vector<float> densities; // of choosing a light in its cluster, over its pmf; 0 for lights of pmf 0
 };
 
-/// Within a group, lights are picked in proportion to their pmf. Lights of pmf 0 are in no group.
+/// Within a cluster, lights are picked in proportion to their pmf. Lights of pmf 0 are in none.
 LightGroups groupLights(std::span<const LightProbability> lights);

@@ -65,7 +65,7 @@ Renderer::Renderer(const Device& device, const SceneGpu& scene, Mode mode, uint3
     else
     {
         primary_.emplace(device, scene, width * height);
-        direct_.emplace(device, scene, width * height);
+        direct_.emplace(device, scene, width, height, 1);
         direct_light_ = device.array<gpu::vec3>("renderer.direct_light", width * height);
     }
 }

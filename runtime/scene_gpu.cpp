@@ -1,6 +1,7 @@
 #include "runtime/scene_gpu.h"
 
 #include "format/material.h"
+#include "runtime/light_clusters.h"
 #include "runtime/texture_pages.h"
 #include "shaders/gather/harmonics.h"
 #include "shaders/pose/pose.h"
@@ -135,10 +136,12 @@ bool hasSmoothLayer(const gpu::Material& material)
 Result<std::unique_ptr<SceneGpu>> SceneGpu::create(const Device& device, const package::Package& package)
 {
     std::unique_ptr<SceneGpu> scene(new SceneGpu(device));
-    for (const gpu::Light& light : package.lights())
+    scene->emitters_.lights.assign(package.lights().begin(), package.lights().end());
+    const std::vector<uint32_t> clusters = clusterLights(scene->emitters_.lights);
+    for (size_t i = 0; i < clusters.size(); ++i)
     {
-        scene->light_probabilities_.push_back({.kind = light.kind, .pmf = light.pmf});
-        scene->emitters_.lights.push_back(light);
+        const gpu::Light& light = scene->emitters_.lights[i];
+        scene->light_probabilities_.push_back({.kind = light.kind, .pmf = light.pmf, .cluster = clusters[i]});
     }
     for (const gpu::Material& material : package.materials())
         scene->emitters_.emissions.push_back(material.emission);

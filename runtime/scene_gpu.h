@@ -12,6 +12,7 @@ struct LightProbability // of the scene's power
 {
     uint32_t kind; // gpu::kLight*
     float pmf;
+    uint32_t cluster = 0; // runtime/light_clusters.h
 
     /// Directional or environment: its power does not tell how much of it is visible. Otherwise it is a local light.
     bool isInfinite() const { return kind == gpu::kLightDirectional || kind == gpu::kLightEnvironment; }

@@ -1,13 +1,18 @@
 // Direct light at the shading points: shadow rays to sampled lights, combined with BSDF-sampled rays.
 #pragma once
-#include "runtime/light_groups.h"
-#include "runtime/stages/rays.h"
+#include "runtime/stages/light_survey.h"
 #include "shaders/direct/direct.h"
+
+#include <optional>
 
 class DirectStage
 {
 public:
-    DirectStage(const Device& device, const SceneGpu& scene, uint32_t max_pixels, const Scratch& scratch = {});
+    /// @param path_count shading points of a pixel, at most
+    DirectStage(const Device& device, const SceneGpu& scene, uint32_t width, uint32_t height, uint32_t path_count,
+                const Scratch& scratch = {});
+    /// Scratch memory that it takes, bytes, but for what aligning its buffers costs.
+    static uint64_t scratchBytes(const SceneGpu& scene, uint32_t width, uint32_t height, uint32_t path_count);
 
     struct Input
     {
@@ -15,8 +20,9 @@ public:
         const Buffer& radiance; // vec3[point_count], grows by the direct light
         const Buffer& noisy;    // likewise, by what is left to chance of it; may be `radiance`
         uint32_t point_count;
-        uint32_t light_sample_count; // per point, for directional, environment and local lights each
-        uint32_t candidate_count;    // light samples of which one is chosen for the shadow ray
+        uint32_t
+            light_sample_count; // per point, for directional, environment and local lights each (those seen, the rest)
+        uint32_t candidate_count; // light samples of which one is chosen for the shadow ray
         uint32_t first_sample;
         uint32_t seed;
     };
@@ -24,11 +30,16 @@ public:
     bool isNoisy() const { return is_noisy_; } // otherwise direct light is exact in every frame
 
 private:
-    void recordSample(Recorder& rec, const RayStage& rays, const Input& in, uint32_t light_sample) const;
+    /// @param tiles gpu::TileLights[]
+    void recordSample(Recorder& rec, const RayStage& rays, const Input& in, uint32_t light_sample,
+                      const Buffer& tiles) const;
 
     LightGroups lights_;
+    uint32_t width_, height_;
     Kernel sample_, emitted_;
     RayQueue emitter_queue_;
-    Buffer shadow_size_, shadow_rays_, emitter_rays_, hits_, picks_;
+    Buffer shadow_size_, shadow_rays_, emitter_rays_, hits_, clusters_, picks_, densities_;
+    Buffer rest_size_, rest_rays_, no_tiles_;
+    std::optional<LightSurvey> survey_; // where there are several clusters
     bool has_area_lights_, is_noisy_;
 };

@@ -16,6 +16,7 @@ layout(set = 1, binding = 1) uniform usamplerBuffer Rays;
 layout(set = 1, binding = 2) uniform usamplerBuffer Hits;
 layout(set = 1, binding = 3, scalar) readonly buffer EmitterRays { EmitterRay emitter_rays[]; };
 layout(set = 1, binding = 4, scalar) buffer Radiance { vec3 radiance[]; };
+layout(set = 1, binding = 5, scalar) readonly buffer Densities { float densities[]; }; // of a light in its cluster, over its pmf
 #include "shaders/lib/hit.glsl"
 #include "shaders/lib/ray.glsl"
 
@@ -25,7 +26,7 @@ vec3 emittedLight(Hit hit, vec3 direction, float pdf)
     if (hit.slot == kNone)
     {
         vec3 light = environmentRadiance(direction);
-        return light == vec3(0.0) ? light : light * misWeight(pdf, params.environment_density * environmentPdf(direction));
+        return light == vec3(0.0) ? light : light * misWeight(pdf, densities[scene.environment_light] * environmentPdf(direction));
     }
     uint light = loadTriangle(loadBvhTriangle(hit.slot).triangle).light;
     if (light == kNone)
@@ -33,7 +34,7 @@ vec3 emittedLight(Hit hit, vec3 direction, float pdf)
     Surface s = surfaceAt(hit.slot, hit.barycentrics, direction);
     if (!emits(s))
         return vec3(0.0);
-    float light_pdf = params.local_density * trianglePdf(light, s.area, hit.t, abs(dot(s.geometric_normal, direction)));
+    float light_pdf = densities[light] * trianglePdf(light, s.area, hit.t, abs(dot(s.geometric_normal, direction)));
     return surfaceEmission(s.material, s.uv0, s.uv1, s.footprints) * misWeight(pdf, light_pdf);
 }
 

@@ -2,13 +2,13 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "shaders/direct/direct.h"
-#include "shaders/lib/lights.glsl"
-#include "shaders/lib/path.glsl"
+#include "shaders/lib/unshadowed.glsl"
 
-// Samples direct light at every shading point: a shadow ray to a light of the group, and, once for all groups, a BSDF-sampled
-// ray that may end on an emitter (emitted.comp weights it). The light is chosen among candidates picked by power, with
-// probability proportional to its unoccluded contribution (Talbot et al. 2005, "Importance Resampling for Global
-// Illumination"). One thread per point; queues hold one ray a point at most.
+// Samples direct light at every shading point: a shadow ray to a light of the group, or one to clusters of lamps that are seen
+// around and one to the rest of them, and, once for all groups, a BSDF-sampled ray that may end on an emitter (emitted.comp
+// weights it). The light is chosen among candidates picked by power and by what is seen of their clusters, with probability
+// proportional to its contribution (Talbot et al. 2005, "Importance Resampling for Global Illumination"). One thread per point;
+// queues hold one ray a point at most.
 
 layout(local_size_x = kRaysGroupSize) in;
 layout(push_constant, scalar) uniform Params { DirectParams params; };
@@ -20,29 +20,75 @@ layout(set = 1, binding = 3, scalar) buffer EmitterQueue { QueueSize emitter_que
 layout(set = 1, binding = 4, scalar) writeonly buffer Rays { Ray rays[]; };
 layout(set = 1, binding = 5, scalar) writeonly buffer EmitterRays { EmitterRay emitter_rays[]; };
 layout(set = 1, binding = 6, scalar) readonly buffer Picks { LightPick picks[]; };
+layout(set = 1, binding = 7, scalar) readonly buffer Clusters { LightCluster clusters[]; };
+layout(set = 1, binding = 8, scalar) readonly buffer Tiles { TileLights tiles[]; };
+layout(set = 1, binding = 9, scalar) buffer RestQueue { QueueSize rest_queue; };
+layout(set = 1, binding = 10, scalar) writeonly buffer RestRays { ShadowRay rest_rays[]; };
 
-/// Picks a light of the group by power and a point or direction on it.
-LightSample sampleGroup(vec3 point, Sampler s)
+#include "shaders/lib/light_cluster.glsl"
+
+const uint kSeen = 0u, kRest = 1u; // what a shadow ray is for
+
+/// Cumulative probability up to the end of a cluster.
+float endOf(uint tile, uint set, uint cluster) { return set == kSeen ? tiles[tile].seen[cluster] : tiles[tile].rest[cluster]; }
+
+/// The cluster that holds u in [0, 1).
+uint pickCluster(uint tile, uint set, float u)
 {
-    LightDraws draws = nextLightDraws(s);
-    LightPick pick = picks[params.first_pick + toIndex(draws.pick.x, params.pick_count)];
-    LightSample light =
-        sampleLightAt(toUnitFloat(draws.pick.y) < pick.threshold ? pick.light : pick.otherwise, point, draws);
-    light.weight *= params.share;
-    light.pdf /= params.share;
-    return light;
+    uint low = 0u, high = params.cluster_count - 1u;
+    while (low < high)
+    {
+        uint middle = (low + high) / 2u;
+        if (u < endOf(tile, set, middle))
+            high = middle;
+        else
+            low = middle + 1u;
+    }
+    return low;
 }
 
-/// What the light sends through the BSDF if nothing is in the way, over the candidate's density. Against the BSDF's ray it is
-/// weighed as one sample, however many candidates there are: where the BSDF finds the light better, it keeps its say.
-vec3 unshadowed(PathVertex v, LightSample light)
+/// The shadow ray of one set of clusters goes to one of several candidates.
+void sampleSet(uint set, uint candidate_count, PathVertex v, vec3 throughput, uint path, uint depth, uint index, uint tile, float draw)
 {
-    vec3 wi = light.wi * v.frame;
-    if (light.weight == vec3(0.0) || !sidesAgree(v.surface, light.wi, wi.z))
-        return vec3(0.0);
-    BsdfValue f = evaluateBsdf(v.bsdf, v.wo, wi);
-    float mis = light.pdf > 0.0 ? misWeight(light.pdf, f.pdf) : 1.0;
-    return (f.diffuse + f.specular) * abs(wi.z) * light.weight * mis;
+    LightSample chosen = kNoLight;
+    vec3 carried = vec3(0.0);
+    float sum = 0.0, chosen_weight = 0.0, turn = toUnitFloat(hash(hash(path, index), params.light_seed + set));
+    for (uint k = 0u; k < candidate_count; ++k)
+    {
+        uint cluster = 0u;
+        float probability = 1.0, visible = 1.0;
+        if (params.knows_seen != 0u)
+        {
+            cluster = pickCluster(tile, set, (float(k) + turn) / float(candidate_count));
+            probability = endOf(tile, set, cluster) - (cluster > 0u ? endOf(tile, set, cluster - 1u) : 0.0);
+            visible = tiles[tile].visible[cluster];
+        }
+        Sampler s = vertexSampler(path, depth, params.point_count, index * params.candidate_count + k, params.light_seed + set);
+        LightSample light = sampleCluster(clusters[params.first_cluster + cluster], v.surface.position, nextLightDraws(s));
+        vec3 candidate = throughput * unshadowed(v, light) / probability;
+        float weight = luminance(candidate) * visible;
+        if (!(weight > 0.0))
+            continue;
+        sum += weight;
+        float kept = 1.0 - weight / sum; // with this probability the choice so far stays; one draw serves for all
+        if (draw < kept)
+            draw /= kept;
+        else
+        {
+            draw = (draw - kept) / (1.0 - kept);
+            chosen = light;
+            carried = candidate;
+            chosen_weight = weight;
+        }
+    }
+    if (sum > 0.0)
+    {
+        ShadowRay ray = ShadowRay(shadowRay(v.surface, chosen, path), carried * (sum / (chosen_weight * float(candidate_count))));
+        if (set == kSeen)
+            shadow_rays[atomicAdd(shadow_queue.count, 1u)] = ray;
+        else
+            rest_rays[atomicAdd(rest_queue.count, 1u)] = ray;
+    }
 }
 
 void main()
@@ -63,31 +109,17 @@ void main()
     bsdf_sampler.dimension += kLightPairs;
     vec2 u = nextPair(bsdf_sampler), choice = nextPair(bsdf_sampler);
 
-    LightSample chosen = kNoLight;
-    vec3 carried = vec3(0.0);
-    float sum = 0.0, draw = choice.y;
-    for (uint k = 0u; k < params.candidate_count; ++k)
+    uint set_count = 1u, tile = 0u;
+    if (params.knows_seen != 0u)
     {
-        LightSample light = sampleGroup(s.position, vertexSampler(path, point.depth + 1u, params.point_count,
-                                                                  index * params.candidate_count + k, params.light_seed));
-        vec3 candidate = throughput * unshadowed(v, light);
-        float weight = luminance(candidate);
-        if (!(weight > 0.0))
-            continue;
-        sum += weight;
-        float kept = 1.0 - weight / sum; // with this probability the choice so far stays; one draw serves for all
-        if (draw < kept)
-            draw /= kept;
-        else
-        {
-            draw = (draw - kept) / (1.0 - kept);
-            chosen = light;
-            carried = candidate;
-        }
+        uint plane = path / params.pixel_count, height = params.pixel_count / params.width, bits = hash(hash(path, index), params.seed);
+        tile = plane * tileColumns(params.width) * tileColumns(height) +
+               tileNear(path - plane * params.pixel_count, params.width, height, vec2(bits & 0xffffu, bits >> 16) / 65536.0);
+        set_count = 2u;
     }
-    if (sum > 0.0)
-        shadow_rays[atomicAdd(shadow_queue.count, 1u)] =
-            ShadowRay(shadowRay(s, chosen, path), carried * (sum / (luminance(carried) * float(params.candidate_count))));
+    for (uint set = 0u; set < set_count; ++set)
+        if (params.knows_seen == 0u || endOf(tile, set, params.cluster_count - 1u) > 0.0)
+            sampleSet(set, set == kSeen ? params.candidate_count : (params.candidate_count + 1u) / 2u, v, throughput, path, point.depth + 1u, index, tile, choice.y);
 
     if (params.traces_bsdf_samples == 0u)
         return;

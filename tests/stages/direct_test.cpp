@@ -10,24 +10,33 @@ constexpr double kAlbedo = 0.5;
 
 TEST(LightGroups, PickEachLightByItsShareOfTheGroup)
 {
-    const std::vector<LightProbability> lights{{gpu::kLightDirectional, 0.3f}, {gpu::kLightPoint, 0.125f},
-                                               {gpu::kLightTriangle, 0.25f},   {gpu::kLightSpot, 0},
-                                               {gpu::kLightPoint, 0.125f},     {gpu::kLightEnvironment, 0.2f}};
+    const std::vector<LightProbability> lights{{gpu::kLightDirectional, 0.3f},  {gpu::kLightPoint, 0.125f},
+                                               {gpu::kLightTriangle, 0.25f, 3}, {gpu::kLightSpot, 0},
+                                               {gpu::kLightPoint, 0.125f, 3},   {gpu::kLightEnvironment, 0.2f}};
     const std::vector<double> shares{0.3, 0.2, 0.5}; // of directional, environment and local lights
     const LightGroups result = groupLights(lights);
     ASSERT_EQ(result.groups.size(), 3u);
     std::vector<double> drawn(lights.size());
     for (const LightGroup& group : result.groups)
     {
-        EXPECT_NEAR(group.share, shares[size_t(group.kind)], 1e-6);
         EXPECT_EQ(group.one_place, group.kind == LightKind::kDirectional);
-        for (uint32_t i = group.first_pick; i < group.first_pick + group.pick_count; ++i)
+        EXPECT_EQ(group.cluster_count, group.kind == LightKind::kLocal ? 2u : 1u);
+        double sum = 0;
+        for (uint32_t c = group.first_cluster; c < group.first_cluster + group.cluster_count; ++c)
         {
-            const gpu::LightPick& pick = result.picks[i];
-            EXPECT_EQ(lights[pick.light].isInfinite(), group.kind != LightKind::kLocal);
-            drawn[pick.light] += double(group.share) * double(pick.threshold) / group.pick_count;
-            drawn[pick.otherwise] += double(group.share) * (1 - double(pick.threshold)) / group.pick_count;
+            const gpu::LightCluster& cluster = result.clusters[c];
+            sum += double(cluster.share);
+            for (uint32_t i = cluster.first_pick; i < cluster.first_pick + cluster.pick_count; ++i)
+            {
+                const gpu::LightPick& pick = result.picks[i];
+                EXPECT_EQ(lights[pick.light].isInfinite(), group.kind != LightKind::kLocal);
+                EXPECT_EQ(lights[pick.light].cluster, lights[pick.otherwise].cluster);
+                EXPECT_NEAR(result.densities[pick.light], 1 / cluster.share, 1e-5);
+                drawn[pick.light] += double(cluster.share) * double(pick.threshold) / cluster.pick_count;
+                drawn[pick.otherwise] += double(cluster.share) * (1 - double(pick.threshold)) / cluster.pick_count;
+            }
         }
+        EXPECT_NEAR(sum, shares[size_t(group.kind)], 1e-6);
     }
     for (size_t i = 0; i < lights.size(); ++i)
         EXPECT_NEAR(drawn[i], lights[i].pmf, 1e-6) << i;

@@ -1,0 +1,58 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "shaders/direct/survey.h"
+#include "shaders/lib/unshadowed.glsl"
+
+// Sends shadow rays from random pixels of a tile to random lights of a cluster. One thread per ray; [x, y] of its result is the
+// brightness that arrives and that would arrive if nothing were in the way.
+
+layout(local_size_x = kRaysGroupSize) in;
+layout(push_constant, scalar) uniform Params { SurveyParams params; };
+
+layout(set = 1, binding = 0, scalar) readonly buffer Points { ShadingPoint points[]; };
+layout(set = 1, binding = 1, scalar) readonly buffer Clusters { LightCluster clusters[]; };
+layout(set = 1, binding = 2, scalar) readonly buffer Picks { LightPick picks[]; };
+layout(set = 1, binding = 3, scalar) buffer ShadowQueue { QueueSize shadow_queue; };
+layout(set = 1, binding = 4, scalar) writeonly buffer ShadowRays { ShadowRay shadow_rays[]; };
+layout(set = 1, binding = 5, scalar) writeonly buffer Arrived { vec3 arrived[]; }; // by ray, cluster, tile
+#include "shaders/lib/light_cluster.glsl"
+
+/// A random point of the tile.
+uint pointOf(uint tile, vec2 u)
+{
+    uint height = params.pixel_count / params.width, columns = tileColumns(params.width);
+    uint tiles = columns * tileColumns(height), plane = tile / tiles, in_plane = tile - plane * tiles;
+    uvec2 corner = kSurveySide * uvec2(in_plane % columns, in_plane / columns);
+    uvec2 side = min(uvec2(kSurveySide), uvec2(params.width, height) - corner);
+    uvec2 at = corner + min(uvec2(u * vec2(side)), side - 1u);
+    return plane * params.pixel_count + at.y * params.width + at.x;
+}
+
+void main()
+{
+    uint thread = gl_GlobalInvocationID.x;
+    uint row = thread / params.tile_count, tile = thread - row * params.tile_count;
+    uint ray = row / params.cluster_count, cluster = row - ray * params.cluster_count;
+    if (ray >= kSurveyRays)
+        return;
+    Sampler s = Sampler(hash(params.seed, tile * params.cluster_count + cluster), params.first_sample * kSurveyRays + ray, 0u);
+    uint path = pointOf(tile, nextPair(s));
+    vec3 result = vec3(0.0);
+    if (path < params.point_count && points[path].slot != kNone)
+    {
+        ShadingPoint point = points[path];
+        PathVertex v = vertexAt(point);
+        if (hasDensity(v.bsdf))
+        {
+            LightSample light = sampleCluster(clusters[params.first_cluster + cluster], v.surface.position, nextLightDraws(s));
+            result.y = luminance(point.throughput * unshadowed(v, light));
+            if (result.y > 0.0 && !isinf(result.y))
+                shadow_rays[atomicAdd(shadow_queue.count, 1u)] =
+                    ShadowRay(shadowRay(v.surface, light, thread), vec3(result.y, 0.0, 0.0));
+            else
+                result.y = 0.0;
+        }
+    }
+    arrived[thread] = result;
+}

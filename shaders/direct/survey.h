@@ -1,0 +1,61 @@
+// Which lamps a part of the picture sees: tiles of pixels send a few shadow rays to every cluster of lights. Shared by
+// runtime/stages/light_survey.cpp and shaders/direct/*.comp.
+#ifndef SHADERS_SURVEY_H
+#define SHADERS_SURVEY_H
+#include "shaders/primary/primary.h"
+
+GPU_NAMESPACE_BEGIN
+
+GPU_CONST uint kMostClusters = 16u; // of local lights
+GPU_CONST uint kSurveySide = 32u;   // pixels, of a tile
+GPU_CONST uint kSurveyRays =
+    16u; // a tile and cluster: the fewer, the more clusters that a tile sees a little of are missed
+
+struct LightPick // Walker's alias method within a cluster
+{
+    uint light; // taken where a second uniform number < threshold
+    float threshold;
+    uint otherwise; // light taken else
+};
+GPU_SIZE(LightPick, 12);
+
+struct LightCluster // lights that are near each other, so that a surface mostly sees all or none of them
+{
+    uint first_pick; // its part of the picks
+    uint pick_count;
+    float share; // of all lights' pmf
+};
+GPU_SIZE(LightCluster, 12);
+
+/// What a tile knows of the clusters. Those that a ray has reached are "seen", the others are "the rest".
+struct TileLights
+{
+    float seen
+        [kMostClusters]; // cumulative probability of choosing a cluster among the seen ones, ends at 1; 0: there is none
+    float rest[kMostClusters];    // likewise among the rest
+    float visible[kMostClusters]; // fraction of a seen cluster's light that arrives; 1 for the rest
+};
+GPU_SIZE(TileLights, 192);
+
+struct SurveyParams
+{
+    uint point_count;
+    uint pixel_count; // points of other paths through the same pixel follow, and have tiles of their own
+    uint width;       // of the picture, pixels
+    uint tile_count;
+    uint first_cluster;
+    uint cluster_count; // <= kMostClusters
+    uint first_sample;
+    uint seed;
+};
+GPU_SIZE(SurveyParams, 32);
+
+struct TallyParams
+{
+    uint tile_count;
+    uint cluster_count;
+};
+GPU_SIZE(TallyParams, 8);
+
+GPU_NAMESPACE_END
+#endif
