@@ -84,7 +84,7 @@ Status GlobalIllumination::checkCounts(const VkPhysicalDeviceLimits& limits, uin
         return tooLarge("photons.count", most_starts);
     if (settings.caustic_photons > most_starts)
         return tooLarge("caustics.photons", most_starts);
-    if (uint64_t(settings.sample_count) * settings.gather_rays > most_rays)
+    if (uint64_t(settings.sample_count) * mostGatherRays(settings) > most_rays)
         return tooLarge("samples.count x gather.rays", most_rays);
     return Success{};
 }
@@ -112,7 +112,7 @@ GlobalIllumination::GlobalIllumination(const Device& device, const SceneGpu& sce
                     photonCapacity(device, uint64_t(settings.caustic_photons) * kCausticBounces), caustic_scratch_),
       legs_(device), cut_(device, scene, photonCapacity(device, settings.photon_capacity), scratch_.stage()),
       samples_(device, width, height, settings.sample_count),
-      gather_(device, scene, settings.sample_count, settings.gather_rays, scratch_.stage()),
+      gather_(device, scene, settings.sample_count, settings.gather_rays, mostGatherRays(settings), scratch_.stage()),
       interpolate_(device, settings.sample_count), glossy_(device, scene, point_count_, scratch_.stage()),
       caustics_(device, scene), compose_(device, width * height, signals_scratch_),
       views_(device, scene, width * height)
@@ -340,7 +340,7 @@ GatherStage::Input GlobalIllumination::gatherInput(const Context& c) const
 {
     const Settings& settings = c.settings;
     return {.mode = CutMode(settings.cut_mode),
-            .ray_count = settings.gather_rays,
+            .ray_count = c.plan.gather_rays,
             .specular_depth = c.plan.chain_depth,
             .photon_count = settings.density_photons,
             .radius = settings.density_radius,

@@ -15,6 +15,11 @@ constexpr float kThresholdMoving = 0.2f, kThresholdStatic = 0.05f;
 /// then gathers at pixels: the blur of the first frames fades, and their lack of noise hides the noise of the next ones.
 constexpr uint32_t kOwnRays = 256, kLeastInterpolated = 8;
 
+/// A frame that has nothing to go on from may have this many gathering rays together, at most this many times those of others. With
+/// the 12288 rays of preset `preview` the mean of Sponza's indirect light deviates by 11 % from one seed to the next, with eight
+/// times as many by 4 %.
+constexpr uint32_t kFirstRays = 98304, kMostTimesRays = 8;
+
 /// A picture of one term shows that alone; the view of the irradiance is made of the indirect light; other views draw over all.
 bool shows(const Settings& settings, uint32_t term)
 {
@@ -40,6 +45,16 @@ bool goesOn(const Settings& settings)
     return settings.view == gpu::kViewNone && (settings.history_frames > 0 || settings.antialias_frames > 0);
 }
 
+uint32_t mostGatherRays(const Settings& settings)
+{
+    const uint64_t usual = uint64_t(settings.sample_count) * settings.gather_rays;
+    // Without histories every frame of a moving camera is a first one.
+    return settings.gather_rays *
+           (settings.history_frames > 0
+                ? std::clamp(uint32_t(kFirstRays / std::max<uint64_t>(usual, 1)), 1u, kMostTimesRays)
+                : 1);
+}
+
 FramePlan planFrame(const Settings& settings, const FrameTraits& traits, const FrameInfo& frame)
 {
     FramePlan plan{};
@@ -61,6 +76,8 @@ FramePlan planFrame(const Settings& settings, const FrameTraits& traits, const F
         plan.makes_map && (plan.indirect || traits.has_guide); // the guide learns the same whatever is shown
     plan.gathers_at_pixels = gathers && own_rays;
     plan.gathers_at_samples = (gathers && !own_rays) || plan.harmonics;
+    const bool has_past = frame.previous || frame.stands();
+    plan.gather_rays = has_past || !goesOn(settings) ? settings.gather_rays : mostGatherRays(settings);
     // Each costs rays a pass over a mostly empty queue. Without mirrors and glass there are only smooth layers over something
     // diffuse, whose third reflections are too faint to matter.
     plan.chain_depth = traits.has_mirrors ? settings.specular_depth : std::min(settings.specular_depth, 2u);

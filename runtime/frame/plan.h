@@ -24,6 +24,7 @@ struct FramePlan
     bool gathers_at_samples;  // final gathering at irradiance samples, between which pixels interpolate
     bool gathers_at_pixels;   // final gathering at every pixel instead
     bool harmonics;           // rough reflection is computed from the samples' harmonics where they suffice
+    uint32_t gather_rays;     // of a sample
     uint32_t chain_depth;     // delta events that gathering rays follow
     uint32_t denoise_passes;  // of the filter over what is noisy; 0: none
     bool remembers;           // light is averaged with histories, and histories are updated
@@ -42,5 +43,8 @@ struct FramePlan
 
 /// Whether frames of such settings may go on from what the frame before them found.
 bool goesOn(const Settings& settings);
+
+/// Most gathering rays of an irradiance sample: those of a frame that has nothing to go on from.
+uint32_t mostGatherRays(const Settings& settings);
 
 FramePlan planFrame(const Settings& settings, const FrameTraits& traits, const FrameInfo& frame);

@@ -1,8 +1,8 @@
 #include "runtime/stages/gather.h"
 
-GatherStage::GatherStage(const Device& device, const SceneGpu& scene, uint32_t max_samples,
+GatherStage::GatherStage(const Device& device, const SceneGpu& scene, uint32_t max_samples, uint32_t rays_per_sample,
                          uint32_t max_rays_per_sample, const Scratch& scratch)
-    : max_samples_(max_samples), max_rays_(max_samples * max_rays_per_sample),
+    : max_samples_(max_samples), pixel_rays_(max_samples * rays_per_sample),
       has_specular_(scene.hasFeature(gpu::kFeatureSpecular)), generate_(device.kernel("gather/generate")),
       generate_pixels_(device.kernel("gather/generate_pixels", scene.constants())),
       shade_(device.kernel("gather/shade", scene.constants())),
@@ -63,7 +63,7 @@ void GatherStage::recordPixels(Recorder& rec, const RayStage& rays, const Photon
 {
     gpu::GatherParams params = paramsOf(in);
     params.ray_count = raysPerPixel(pixels.point_count);
-    const uint32_t band = max_rays_ / params.ray_count; // pixels whose rays there is room for
+    const uint32_t band = pixel_rays_ / params.ray_count; // pixels whose rays there is room for
     for (uint32_t first = 0; first < pixels.point_count; first += band)
     {
         const gpu::PixelGatherParams here{.first_point = first,
@@ -77,7 +77,7 @@ void GatherStage::recordPixels(Recorder& rec, const RayStage& rays, const Photon
                 {{"Points", pixels.points}, {"Rays", queue_.rays}, {"States", states_}});
         rays.closest(rec, queue_, hits_, params.seed);
         if (guide)
-            guide->splat(rec, queue_, max_rays_, hits_, first > 0);
+            guide->splat(rec, queue_, pixel_rays_, hits_, first > 0);
         follow(rec, rays, map, cut, params);
         rec.run(add_, here.point_count, here, {{"GatheredBlock", gathered_}, {"Radiance", pixels.radiance}});
     }

@@ -13,8 +13,9 @@
 class GatherStage
 {
 public:
-    GatherStage(const Device& device, const SceneGpu& scene, uint32_t max_samples, uint32_t max_rays_per_sample,
-                const Scratch& scratch = {});
+    /// @param rays_per_sample as many rays in all are also spent where pixels gather for themselves
+    GatherStage(const Device& device, const SceneGpu& scene, uint32_t max_samples, uint32_t rays_per_sample,
+                uint32_t max_rays_per_sample, const Scratch& scratch = {});
 
     struct Input
     {
@@ -47,10 +48,10 @@ public:
     /// Rays of every pixel that cost as much as those of the samples; at least one, which may cost more.
     uint32_t raysPerPixel(uint32_t pixel_count) const
     {
-        return std::clamp(max_rays_ / pixel_count, 1u, kMostPixelRays);
+        return std::clamp(pixel_rays_ / pixel_count, 1u, kMostPixelRays);
     }
     /// Whether that is efficient: otherwise a picture needs many passes, as the ray buffers are small.
-    bool suitsPixels(uint32_t pixel_count) const { return uint64_t(max_rays_) * kMostPasses >= pixel_count; }
+    bool suitsPixels(uint32_t pixel_count) const { return uint64_t(pixel_rays_) * kMostPasses >= pixel_count; }
     /// Indirect diffuse light without samples and interpolation: noise, and no blur but that of the cut.
     void recordPixels(Recorder& rec, const RayStage& rays, const PhotonTreeStage::Output& map,
                       const CutStage::Output& cut, const Input& in, const PixelInput& pixels,
@@ -70,7 +71,7 @@ private:
     void follow(Recorder& rec, const RayStage& rays, const PhotonTreeStage::Output& map, const CutStage::Output& cut,
                 gpu::GatherParams params) const;
 
-    uint32_t max_samples_, max_rays_;
+    uint32_t max_samples_, pixel_rays_;
     bool has_specular_;
     Kernel generate_, generate_pixels_, shade_, shade_knn_, sum_, add_, project_;
     RayQueue queue_, next_queue_;

@@ -156,7 +156,7 @@ TEST_F(CutsAtAWall, LightNothingBehindIt)
     const uint32_t count = uint32_t(samples.size()), rays = 64;
     const Buffer size = sizeBuffer(count), on_gpu = upload("test.samples", samples), spheres;
     const CutStage stage(device(), *scene_, uint32_t(map->photons.size()));
-    const GatherStage gather(device(), *scene_, count, rays);
+    const GatherStage gather(device(), *scene_, count, rays, rays);
     const auto gathered = [&](const PhotonMap& of, const CutStage::Input& in)
     {
         submit(*scene_,

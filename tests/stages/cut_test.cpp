@@ -291,7 +291,7 @@ TEST_F(Cuts, AreReadNearlyAsDensityIsEstimated)
     constexpr uint32_t kRays = 64;
     const Buffer size = sizeBuffer(count), on_gpu = upload("test.samples", samples), spheres;
     const CutStage stage(device(), *scene_, uint32_t(map->photons.size()));
-    const GatherStage gather(device(), *scene_, count, kRays);
+    const GatherStage gather(device(), *scene_, count, kRays, kRays);
     const auto gathered = [&](CutMode mode)
     {
         CutStage::Input in = kRefined;

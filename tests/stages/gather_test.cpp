@@ -88,7 +88,7 @@ protected:
         const auto cut = cutOf(scene, nodes, direction);
         const auto map = mapOf(scene, photons);
         const Samples on_gpu{.size = sizeBuffer(count), .samples = upload("test.samples", samples), .spheres = {}};
-        const GatherStage stage(device(), scene, std::max(count, 1u), kRays);
+        const GatherStage stage(device(), scene, std::max(count, 1u), kRays, kRays);
         submit(scene,
                [&](Recorder& rec)
                {
@@ -226,7 +226,7 @@ TEST_F(Gather, OfPixelsIsTheSameInOnePassAndInMany)
     const auto pixels = [&](uint32_t room, const std::vector<gpu::CutNode>& nodes)
     {
         const auto cut = cutOf(*scene, nodes);
-        const GatherStage stage(device(), *scene, 1, room);
+        const GatherStage stage(device(), *scene, 1, room, room);
         EXPECT_EQ(stage.raysPerPixel(kPixels), 1u);
         const Buffer radiance = upload("test.radiance", std::vector<gpu::vec3>(kPixels));
         submit(*scene,

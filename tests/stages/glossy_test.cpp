@@ -100,7 +100,7 @@ protected:
         const auto map = mapOf(scene, {});
         const Buffer size = sizeBuffer(count), on_gpu = upload("test.samples", samples),
                      spheres = upload("test.spheres", std::vector<gpu::vec4>(count));
-        const GatherStage stage(device(), scene, count, kRays);
+        const GatherStage stage(device(), scene, count, kRays, kRays);
         submit(scene,
                [&](Recorder& rec)
                {

@@ -432,8 +432,11 @@ TEST(FramePlan, GoesOnWhereTheLastFrameServes)
     FrameInfo frame{};
     const FramePlan first = planFrame(settings, traits, frame);
     EXPECT_TRUE(first.remembers && first.antialiases && first.harmonics && first.gathers_at_samples);
+    Settings preview = *presetSettings("preview");
+    EXPECT_EQ(planFrame(preview, traits, frame).gather_rays, 8 * preview.gather_rays) << "there is no other light";
     frame.previous = frame.camera;
     EXPECT_EQ(planFrame(settings, traits, frame).denoise_passes + 1, first.denoise_passes);
+    EXPECT_EQ(planFrame(preview, traits, frame).gather_rays, preview.gather_rays);
     frame.previous.reset();
     frame.accumulated = 40;
     const FramePlan standing = planFrame(settings, traits, frame);
