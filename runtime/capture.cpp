@@ -72,6 +72,14 @@ LayerValues depthOf(std::span<const gpu::LayerSums> sums)
     return layer;
 }
 
+LayerValues motionsOf(std::span<const gpu::LayerSums> sums)
+{
+    LayerValues layer{.name = "motion", .channels = "XY", .values = {}};
+    for (const gpu::LayerSums& pixel : sums)
+        layer.values.insert(layer.values.end(), {pixel.motion.x, pixel.motion.y});
+    return layer;
+}
+
 LayerValues layerOf(const std::string& name, std::span<const gpu::LayerSums> sums, const Renderer& renderer,
                     const Device& device)
 {
@@ -87,6 +95,8 @@ LayerValues layerOf(const std::string& name, std::span<const gpu::LayerSums> sum
         return normalsOf(sums);
     if (name == "depth")
         return depthOf(sums);
+    if (name == "motion")
+        return motionsOf(sums);
     if (name == "albedo")
     {
         LayerValues layer = meanOf(sums, count, name, &gpu::LayerSums::albedo);

@@ -13,10 +13,11 @@
 Status checkPicturePath(const std::filesystem::path& path);
 
 /// What an .exr can hold: the picture (channels R, G, B), its terms (direct.R, ...), what even light would show of the surface
-/// (albedo.R, ...), its normal in the world (normal.X, ...), and metres from the eye along the way of the light (Z; the sky is
-/// infinitely far). Of pictures of many samples they are means; of the depth the last sample.
-inline constexpr std::array<std::string_view, 9> kLayerNames{"beauty", "emission", "direct", "caustics", "indirect",
-                                                             "glossy", "albedo",   "normal", "depth"};
+/// (albedo.R, ...), its normal in the world (normal.X, ...), metres from the eye along the way of the light (Z; the sky is
+/// infinitely far), and pixels from here to where that was in the picture before (motion.X to the right, motion.Y down). Of
+/// pictures of many samples they are means; of depth and motion the last sample.
+inline constexpr std::array<std::string_view, 10> kLayerNames{"beauty", "emission", "direct", "caustics", "indirect",
+                                                              "glossy", "albedo",   "normal", "depth",    "motion"};
 
 /// Writes the picture so far: .exr linear radiance, 32-bit; .png exposed and tone-mapped.
 /// @param layers of kLayerNames, in place of the picture alone; only of .exr, and renderer.keepLayers() came before

@@ -81,6 +81,7 @@ FrameInfo Renderer::beginFrame(Recorder& rec, const Camera& camera, const Settin
     if (!last_camera_ || !scene_stands || !sameView(*last_camera_, frame.camera))
     {
         resolve_.restart(rec);
+        frame.before = last_camera_;
         if (went_on_ && goes_on)
             frame.previous = last_camera_;
         if (frame.previous && !scene_stands)

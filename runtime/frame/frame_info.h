@@ -8,7 +8,8 @@
 struct FrameInfo
 {
     gpu::CameraParams camera; // its first_sample is `accumulated`; its seed is that of all frames of a static view
-    std::optional<gpu::CameraParams> previous; // of the last frame, if this one may reuse its results
+    std::optional<gpu::CameraParams> before;   // of the last frame, if this one shows something else
+    std::optional<gpu::CameraParams> previous; // the same, if this one may reuse its results
     std::optional<LightRange> light_range;     // of that frame's light to this one's, where light has changed since
     uint32_t map_seed = 0;                     // of photon maps, the same in all frames that may share one
     uint32_t number = 0;                       // frames that the renderer recorded before

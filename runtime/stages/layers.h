@@ -18,6 +18,7 @@ public:
     const Buffer& sums() const { return sums_; } // gpu::LayerSums[width * height]
 
 private:
+    const SceneGpu& scene_;
     Kernel add_;
-    Buffer sums_;
+    Buffer views_, sums_;
 };

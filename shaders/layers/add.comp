@@ -3,6 +3,7 @@
 #extension GL_EXT_scalar_block_layout : require
 #include "shaders/layers/layers.h"
 #include "shaders/lib/path.glsl"
+#include "shaders/pose/pose.h"
 
 // Adds what a frame made of each term, of both points of a pixel, and what its first point is like. One thread per pixel.
 
@@ -17,6 +18,10 @@ layout(set = 1, binding = 4, scalar) readonly buffer Indirect { vec3 indirect[];
 layout(set = 1, binding = 5, scalar) readonly buffer Glossy { vec3 glossy[]; };
 layout(set = 1, binding = 6, scalar) readonly buffer Caustics { vec3 caustics[]; };
 layout(set = 1, binding = 7, scalar) buffer Layers { LayerSums layers[]; };
+layout(set = 1, binding = 8, scalar) readonly buffer Views { FrameViews views; };
+layout(set = 1, binding = 9, scalar) readonly buffer LastCorners { TriangleCorners last_corners[]; };
+
+#include "shaders/lib/motion.glsl"
 
 bool has(uint term) { return (params.terms & term) != 0u; }
 
@@ -49,14 +54,20 @@ void main()
     if (pixel >= params.pixel_count)
         return;
     vec3 none = vec3(0.0);
-    LayerSums sums = LayerSums(none, none, none, none, none, none, none, kSkyDepth);
+    LayerSums sums = LayerSums(none, none, none, none, none, none, none, kSkyDepth, vec2(0.0));
     if (params.adds != 0u)
         sums = layers[pixel];
     sums.depth = kSkyDepth;
+    sums.motion = vec2(0.0); // nothing has moved while frames are added
     addLight(sums, pixel);
     if (params.point_count > params.pixel_count)
         addLight(sums, params.pixel_count + pixel);
     ShadingPoint point = points[pixel];
+    if (params.has_last != 0u)
+    {
+        Motion motion = motionOf(pixel, point, displacementOf(point), params.spread, true);
+        sums.motion = motion.from.x == kNoMotion ? vec2(0.0) : motion.from;
+    }
     if (point.slot != kNone)
     {
         PathVertex v = vertexAt(point);

@@ -1,8 +1,7 @@
 // Layers of a picture: its terms and what the camera sees first. Shared by runtime/stages/layers.cpp and shaders/layers/*.
 #ifndef SHADERS_LAYERS_H
 #define SHADERS_LAYERS_H
-#include "shaders/compose/compose.h"
-#include "shaders/primary/primary.h"
+#include "shaders/signals/signals.h"
 
 GPU_NAMESPACE_BEGIN
 
@@ -16,8 +15,9 @@ struct LayerSums // over the frames of a picture, but for the depth
     vec3 albedo; // part of even light that the first point shows
     vec3 normal; // unit, world; with the normal map
     float depth; // metres along the way that the light comes, of the last frame; kSkyDepth: the sky
+    vec2 motion; // pixels, from here to where that was in the picture before, of the last frame
 };
-GPU_SIZE(LayerSums, 88);
+GPU_SIZE(LayerSums, 96);
 
 GPU_CONST float kSkyDepth = 3e38f;
 
@@ -30,8 +30,9 @@ struct LayersParams
     float spread;     // ShadingPoint.width over the way from the eye; 0: parallel rays
     vec3 eye;         // the camera's position
     vec3 forward;     // unit
+    uint has_last;    // 1: FrameViews.last is that of the picture before
 };
-GPU_SIZE(LayersParams, 44);
+GPU_SIZE(LayersParams, 48);
 
 GPU_NAMESPACE_END
 #endif

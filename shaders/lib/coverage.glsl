@@ -17,7 +17,7 @@ float surfaceCoverage(uint material, uvec3 v, vec3 weights)
     {
         vec2 uv0 = weights.x * loadVertex(v.x).uv0 + weights.y * loadVertex(v.y).uv0 + weights.z * loadVertex(v.z).uv0;
         vec2 uv1 = weights.x * loadVertex(v.x).uv1 + weights.y * loadVertex(v.y).uv1 + weights.z * loadVertex(v.z).uv1;
-        alpha *= sampleTexture(ref, uv0, uv1, vec2(0.0)).a;
+        alpha *= sampleTexture(ref, uv0, uv1).a;
     }
     if ((flags & kMaterialAlphaMask) != 0u)
         return alpha >= loadMaterial(material).alpha_cutoff ? 1.0 : 0.0;

@@ -103,7 +103,7 @@ vec3 triangleEmission(Light light, vec3 weights)
     uvec3 v = loadTriangle(light.triangle).vertices;
     vec2 uv0 = interpolate(weights, loadVertex(v.x).uv0, loadVertex(v.y).uv0, loadVertex(v.z).uv0);
     vec2 uv1 = interpolate(weights, loadVertex(v.x).uv1, loadVertex(v.y).uv1, loadVertex(v.z).uv1);
-    vec3 emission = surfaceEmission(light.material, uv0, uv1, vec2(0.0));
+    vec3 emission = surfaceEmission(light.material, uv0, uv1, kPoint);
     return kSceneHasAlpha ? emission * surfaceCoverage(light.material, v, weights) : emission;
 }
 

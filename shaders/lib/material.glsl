@@ -28,7 +28,7 @@ struct SurfaceMaterial // the material's values at one point, textures applied
     vec3 diffuse_transmission_color;
 };
 
-vec3 surfaceEmission(uint material, vec2 uv0, vec2 uv1, vec2 footprints)
+vec3 surfaceEmission(uint material, vec2 uv0, vec2 uv1, Footprints footprints)
 {
     vec3 emission = loadMaterial(material).emission;
     uint ref = loadMaterial(material).emissive_texture;
@@ -101,7 +101,12 @@ SurfaceMaterial materialAt(Surface s)
     // Coarse levels mix in the colours of texels that are cut away, where any are.
     bool cut_away = (m.flags & (kMaterialAlphaMask | kMaterialAlphaBlend)) != 0u;
     if (hasFeature(kFeatureBaseColorMaps) && ref != kNone)
-        m.base_color *= sampleTexture(ref, s.uv0, s.uv1, cut_away ? vec2(0.0) : s.footprints).rgb;
+    {
+        Footprints footprints = s.footprints;
+        if (cut_away)
+            footprints = kPoint;
+        m.base_color *= sampleTexture(ref, s.uv0, s.uv1, footprints).rgb;
+    }
     ref = loadMaterial(s.material).metallic_roughness_texture;
     if (hasFeature(kFeatureMetallicRoughnessMaps) && ref != kNone)
     {

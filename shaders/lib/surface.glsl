@@ -20,7 +20,7 @@ struct Surface
     bool front;            // the ray met the triangle's front
     float area;            // square metres, of the triangle
     vec2 uv0, uv1;
-    vec2 footprints;       // side of what is seen at once, in units of uv0 and uv1; 0: a point
+    Footprints footprints; // what of uv0 and uv1 is seen at once
     vec4 color;            // vertex colour
     uint material;
     uint triangle;
@@ -66,10 +66,11 @@ vec3 mappedNormal(vec3 normal, uint ref, float scale, Surface s)
     return dot(bent, bent) > 1e-12 ? normalize(bent) : normal;
 }
 
-/// Surface coordinates a metre.
-float uvDensity(vec2 a, vec2 b, vec2 c, float area)
+/// What a ray of round cross-section covers of a triangle's plane: axes of an ellipse, as surface coordinates.
+/// @param along_u, along_v gradients of the second and the third barycentric coordinate, 1/m
+mat2 footprintOn(mat2x3 axes, vec3 along_u, vec3 along_v, vec2 a, vec2 b, vec2 c)
 {
-    return sqrt(0.5 * abs(determinant(mat2(b - a, c - a))) / max(area, 1e-30));
+    return mat2(b - a, c - a) * mat2(dot(axes[0], along_u), dot(axes[0], along_v), dot(axes[1], along_u), dot(axes[1], along_v));
 }
 
 /// How much farther along a vertex' normal its tangent plane is than the point. Packed normals are exact to 3e-5 radians.
@@ -187,6 +188,23 @@ void setNormals(inout Surface s, vec3 v[3], uvec3 vertex, vec3 weights)
     s.normal = facingNormal(s.normal, s);
 }
 
+const float kLeastCosine = 0.01; // beyond that a ray's end is no longer
+
+/// @param edge_u, edge_v of the triangle, from its first vertex; @param v its vertices; @param width metres, of the ray
+void setFootprints(inout Surface s, vec3 edge_u, vec3 edge_v, uvec3 v, float width)
+{
+    mat3 across = frameAround(s.direction);
+    float cosine = dot(s.geometric_normal, s.direction); // < 0
+    vec3 per_height = s.direction / min(cosine, -kLeastCosine);
+    mat2x3 axes = width * mat2x3(across[0] - dot(s.geometric_normal, across[0]) * per_height,
+                                 across[1] - dot(s.geometric_normal, across[1]) * per_height); // carried along the ray onto the plane
+    vec3 n = 0.5 / s.area * s.geometric_normal; // its sign does not matter to an ellipse
+    vec3 along_u = cross(edge_v, n), along_v = cross(n, edge_u);
+    s.footprints.uv0 = footprintOn(axes, along_u, along_v, loadVertex(v.x).uv0, loadVertex(v.y).uv0, loadVertex(v.z).uv0);
+    if (hasFeature(kFeatureSecondUv))
+        s.footprints.uv1 = footprintOn(axes, along_u, along_v, loadVertex(v.x).uv1, loadVertex(v.y).uv1, loadVertex(v.z).uv1);
+}
+
 /// The surface at BvhTriangle `slot`, met along `direction` by a ray as wide as `width` metres.
 Surface surfaceAt(uint slot, vec2 barycentrics, vec3 direction, float width)
 {
@@ -207,15 +225,9 @@ Surface surfaceAt(uint slot, vec2 barycentrics, vec3 direction, float width)
     uvec3 v = loadTriangle(s.triangle).vertices;
     s.uv0 = interpolate(weights, loadVertex(v.x).uv0, loadVertex(v.y).uv0, loadVertex(v.z).uv0);
     s.uv1 = hasFeature(kFeatureSecondUv) ? interpolate(weights, loadVertex(v.x).uv1, loadVertex(v.y).uv1, loadVertex(v.z).uv1) : vec2(0.0);
-    s.footprints = vec2(0.0);
+    s.footprints = kPoint;
     if (width > 0.0)
-    {
-        // As large as the ellipse that the ray's end makes.
-        float side = width * inversesqrt(max(abs(dot(s.geometric_normal, direction)), 0.01));
-        s.footprints.x = side * uvDensity(loadVertex(v.x).uv0, loadVertex(v.y).uv0, loadVertex(v.z).uv0, s.area);
-        if (hasFeature(kFeatureSecondUv))
-            s.footprints.y = side * uvDensity(loadVertex(v.x).uv1, loadVertex(v.y).uv1, loadVertex(v.z).uv1, s.area);
-    }
+        setFootprints(s, v1 - v0, v2 - v0, v, width);
     s.color = hasFeature(kFeatureVertexColors) ? interpolate(weights, vertexColor(v.x), vertexColor(v.y), vertexColor(v.z)) : vec4(1.0);
     setNormals(s, vec3[3](v0, v1, v2), v, weights);
     return s;

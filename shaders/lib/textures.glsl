@@ -47,12 +47,40 @@ float wrapCoordinate(float x, uint mode, float size)
 /// Texels of level 0.
 uvec2 textureTexels(TextureRef ref) { return uvec2(ref.size & 0xffffu, ref.size >> 16); }
 
-/// Mip level whose texels are as large as a square of side `footprint` in surface coordinates.
-float levelFor(TextureRef ref, float footprint)
+/// What is seen of a texture at once: an ellipse, by two conjugate diameters in surface coordinates.
+struct Footprints
+{
+    mat2 uv0, uv1; // 0: a point
+};
+
+const Footprints kPoint = Footprints(mat2(0.0), mat2(0.0));
+
+// Most lookups along an ellipse. What is longer still is blurred across, too.
+const float kMostLookups = 8.0;
+
+struct Lookups // along the long axis of an ellipse
+{
+    vec2 along; // that axis, in coordinates of the texture
+    float count;
+    float level; // mip level whose texels are as large as one lookup's part of the ellipse
+};
+
+/// @param axes in surface coordinates
+Lookups lookupsFor(TextureRef ref, mat2 axes)
 {
     vec2 size = vec2(textureTexels(ref));
-    float area = abs(ref.u_row.x * ref.v_row.y - ref.u_row.y * ref.v_row.x) * size.x * size.y;
-    return log2(max(1.0, footprint * sqrt(area)));
+    mat2 turned = mat2(ref.u_row.x, ref.v_row.x, ref.u_row.y, ref.v_row.y) * axes; // columns, as the texture's coordinates
+    vec2 a = turned[0] * size, b = turned[1] * size;
+    // Its singular values are the lengths of the principal axes, the first singular vector is the direction of the longer.
+    float p = a.x * a.x + b.x * b.x, q = a.x * a.y + b.x * b.y, r = a.y * a.y + b.y * b.y;
+    float root = length(vec2(p - r, 2.0 * q)), longer = sqrt(max(0.5 * (p + r + root), 0.0));
+    float shorter = max(abs(a.x * b.y - a.y * b.x) / max(longer, 1e-20), 1.0);
+    vec2 direction = p > r ? vec2(p - r + root, 2.0 * q) : vec2(2.0 * q, r - p + root);
+    float norm = length(direction);
+    direction = norm > 0.0 ? direction / norm : vec2(1.0, 0.0);
+    longer = max(longer, 1.0); // what is smaller than a texel is a texel
+    float count = clamp(floor(longer / shorter + 0.5), 1.0, kMostLookups);
+    return Lookups(longer * direction / size, count, 0.5 * log2(shorter * max(longer / count, 1.0)));
 }
 
 /// One level of a tile, bilinearly filtered; what lies around it repeats.
@@ -73,14 +101,9 @@ vec4 sampleTile(TextureRef ref, vec2 st, float level)
     return level > float(fine) ? mix(texel, sampleTileLevel(ref, st, fine + 1u), level - float(fine)) : texel;
 }
 
-/// One texture around the surface coordinates. @param footprints how far around, in units of uv0 and uv1; 0: a point
-vec4 sampleTexture(uint ref_index, vec2 uv0, vec2 uv1, vec2 footprints)
+/// One texture around one place.
+vec4 sampleLevel(TextureRef ref, vec2 st, float level)
 {
-    TextureRef ref = texture_refs[ref_index];
-    vec3 uv = vec3((ref.sampling & kSampleUv1) != 0u ? uv1 : uv0, 1.0);
-    float footprint = (ref.sampling & kSampleUv1) != 0u ? footprints.y : footprints.x;
-    float level = footprint > 0.0 ? levelFor(ref, footprint) : 0.0;
-    vec2 st = vec2(dot(ref.u_row, uv), dot(ref.v_row, uv));
     if ((ref.sampling & 31u) != kWrapRepeat) // it does not repeat, or is not filtered
     {
         vec2 size = vec2(textureTexels(ref));
@@ -94,8 +117,25 @@ vec4 sampleTexture(uint ref_index, vec2 uv0, vec2 uv1, vec2 footprints)
     return sampleTexturePage(ref.page, vec3(st, float(ref.layer)), level);
 }
 
+/// One texture around the surface coordinates: the mean of lookups along the footprint, each as large as that is wide.
+vec4 sampleTexture(uint ref_index, vec2 uv0, vec2 uv1, Footprints footprints)
+{
+    TextureRef ref = texture_refs[ref_index];
+    bool second = (ref.sampling & kSampleUv1) != 0u;
+    vec3 uv = vec3(second ? uv1 : uv0, 1.0);
+    vec2 st = vec2(dot(ref.u_row, uv), dot(ref.v_row, uv));
+    if (footprints.uv0 == mat2(0.0) && footprints.uv1 == mat2(0.0))
+        return sampleLevel(ref, st, 0.0);
+    Lookups lookups = lookupsFor(ref, second ? footprints.uv1 : footprints.uv0);
+    vec4 sum = vec4(0.0);
+    for (float k = 0.5; k < lookups.count; k += 1.0)
+        sum += sampleLevel(ref, st + (k / lookups.count - 0.5) * lookups.along, lookups.level);
+    return sum / lookups.count;
+}
+vec4 sampleTexture(uint ref_index, vec2 uv0, vec2 uv1) { return sampleTexture(ref_index, uv0, uv1, kPoint); }
+
 /// The vector that a normal map stores there, before its scale; about unit length.
-vec3 sampleNormal(uint ref_index, vec2 uv0, vec2 uv1, vec2 footprints)
+vec3 sampleNormal(uint ref_index, vec2 uv0, vec2 uv1, Footprints footprints)
 {
     vec3 n = sampleTexture(ref_index, uv0, uv1, footprints).xyz * 2.0 - 1.0;
     if ((texture_refs[ref_index].sampling & kSampleNormalXy) != 0u)

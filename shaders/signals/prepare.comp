@@ -3,7 +3,6 @@
 #extension GL_EXT_scalar_block_layout : require
 #include "shaders/lib/path.glsl"
 #include "shaders/lib/signal.glsl"
-#include "shaders/lib/view.glsl"
 #include "shaders/pose/pose.h"
 
 // Collects the data of a pixel for filters and histories: position and normals of its surface, motion vector, light, reflectance.
@@ -23,41 +22,12 @@ layout(set = 1, binding = 7, scalar) writeonly buffer GlossySignals { LightSigna
 layout(set = 1, binding = 8, scalar) readonly buffer LastCorners { TriangleCorners last_corners[]; };
 layout(set = 1, binding = 9, scalar) writeonly buffer Displacements { vec3 displacements[]; }; // where something can move
 
+#include "shaders/lib/motion.glsl"
+
 /// A signal of unknown error.
 LightSignal signalOf(vec3 light, vec3 reflectance, float lobe)
 {
     return packSignal(Signal(light, max(reflectance, vec3(kLeastReflectance)), max(lobe, 1.0 / 255.0), -1.0));
-}
-
-/// How far a surface has come since the last frame, metres.
-vec3 displacementOf(ShadingPoint point)
-{
-    if (point.slot == kNone || point.slot < scene.first_moving_slot)
-        return vec3(0.0);
-    TriangleCorners last = last_corners[point.slot - scene.first_moving_slot];
-    BvhTriangle now = loadBvhTriangle(point.slot);
-    vec3 weights = vec3(1.0 - point.barycentrics.x - point.barycentrics.y, point.barycentrics);
-    return weights.x * (now.v0 - last.v0) + weights.y * (now.v1 - last.v1) + weights.z * (now.v2 - last.v2);
-}
-
-/// Where what the pixel shows was in the last picture. In mirrors and glass it is taken for the image behind them that a plane
-/// one would show, and for one that moves as the surface itself does.
-Motion motionOf(uint pixel, ShadingPoint point, vec3 displacement)
-{
-    CameraParams camera = views.now;
-    vec2 at = vec2(pixel % camera.width, pixel / camera.width) + (camera.jitter.x > 0.0 ? camera.jitter : vec2(0.5));
-    Ray ray = cameraRay(camera, at, pixel);
-    float distance_ = kInfinity;
-    if (point.slot != kNone)
-        distance_ = point.depth == 0u || params.spread == 0.0 ? dot(point.position - ray.origin, ray.direction) + nearDistance(camera, ray)
-                                                               : point.width / params.spread;
-    if (params.has_previous == 0u)
-        return Motion(vec2(kNoMotion), distance_);
-    vec3 eye = ray.origin - nearDistance(camera, ray) * ray.direction;
-    vec2 last;
-    bool seen = distance_ < kInfinity ? imagePosition(views.last, eye + distance_ * ray.direction - displacement, last)
-                                      : imageDirection(views.last, ray.direction, last);
-    return Motion(seen ? last - at : vec2(kNoMotion), distance_);
 }
 
 void main()
@@ -86,7 +56,7 @@ void main()
     }
     guides[pixel] = SurfaceGuide(point.slot != kNone ? point.position : vec3(kInfinity), packSnorm4x8(vec4(unitToOctahedral(smooth_normal), unitToOctahedral(normal))));
     vec3 displacement = displacementOf(point);
-    motions[pixel] = motionOf(pixel, point, displacement);
+    motions[pixel] = motionOf(pixel, point, displacement, params.spread, params.has_previous != 0u);
     if (scene.first_moving_slot != kNone)
         displacements[pixel] = displacement;
 }

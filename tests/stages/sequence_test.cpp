@@ -185,12 +185,75 @@ TEST_F(RememberingSequence, LayersAddUpToThePicture)
     const std::vector<std::string> names(kLayerNames.begin(), kLayerNames.end());
     ASSERT_TRUE(capture(folder_ / "layers.exr", *renderer, *opened_->device, *opened_->scene, settings, names));
     const std::string bytes = fileBytes(folder_ / "layers.exr");
-    for (const char* channel :
-         {"R", "Z", "albedo.R", "caustics.G", "direct.B", "emission.R", "glossy.R", "indirect.R", "normal.X"})
+    for (const char* channel : {"R", "Z", "albedo.R", "caustics.G", "direct.B", "emission.R", "glossy.R", "indirect.R",
+                                "motion.Y", "normal.X"})
         EXPECT_TRUE(contains(bytes, std::string(1, '\0') + channel + std::string(1, '\0'))) << channel;
     const auto read = readExr(folder_ / "layers.exr");
     ASSERT_TRUE(read) << read.error().message;
     EXPECT_EQ(read->rgb[0], renderer->picture(*opened_->device)[0].x);
+}
+
+struct Place // in a picture, pixels from its upper left corner
+{
+    double x, y;
+};
+
+/// Where a pinhole camera shows a point.
+Place placeOf(const Camera& camera, gpu::vec3 point, uint32_t width, uint32_t height)
+{
+    const gpu::vec3 d = point + -1.0f * camera.position, right = normalize(cross(camera.forward, camera.up));
+    const double scale = height / (2 * std::tan(camera.vertical_fov / 2.0) * dot(d, normalize(camera.forward)));
+    return {width / 2.0 + scale * dot(d, right),
+            height / 2.0 - scale * dot(d, cross(right, normalize(camera.forward)))};
+}
+
+/// The point at a distance along the ray through the centre of a pixel.
+gpu::vec3 pointAt(const Camera& camera, uint32_t pixel, float distance, uint32_t width, uint32_t height)
+{
+    const gpu::vec3 forward = normalize(camera.forward), right = normalize(cross(forward, camera.up));
+    const double pixel_side = 2 * std::tan(camera.vertical_fov / 2.0) / height;
+    const auto x = float((pixel % width + 0.5 - width / 2.0) * pixel_side);
+    const auto y = float((height / 2.0 - pixel / width - 0.5) * pixel_side);
+    return camera.position + distance * normalize(forward + x * right + y * cross(right, forward));
+}
+
+TEST_F(RememberingSequence, MotionIsToWhereTheLastCameraSawTheSame)
+{
+    Settings settings = opened_->settings;
+    settings.antialias_frames = 0; // rays of moving pictures go through other places than the pixels' centres
+    const uint32_t width = options_.width, height = options_.height;
+    std::optional<Renderer> renderer;
+    ASSERT_TRUE(makeRenderer(renderer, *opened_, Mode::kGi, width, height, settings, true));
+    Recorder rec(*opened_->device);
+    const auto layersOf = [&](const Camera& camera)
+    {
+        rec.begin(opened_->scene->descriptorSet());
+        renderer->record(rec, camera, settings, 7);
+        rec.submitAndWait();
+        return renderer->layerSums(*opened_->device);
+    };
+    const Camera last = opened_->path->at(0.25), now = opened_->path->at(0.5);
+    const auto first = layersOf(last), moved = layersOf(now), still = layersOf(now);
+    const double pixel = 2 * std::tan(now.vertical_fov / 2.0) / height; // radians, the largest
+    const gpu::vec3 way = now.position + -1.0f * last.position;
+    size_t far = 0;
+    for (uint32_t i = 0; i < moved.size(); ++i)
+    {
+        EXPECT_EQ(first[i].motion.x, 0);
+        EXPECT_EQ(still[i].motion.y, 0);
+        if (!(moved[i].depth < gpu::kSkyDepth))
+            continue;
+        const Place at = placeOf(last, pointAt(now, i, moved[i].depth, width, height), width, height);
+        const double x = at.x - (i % width + 0.5), y = at.y - (i / width + 0.5);
+        // The sample lies up to half a diagonal from the centre, so that its distance along the centre's ray is less by up to a
+        // quarter of the pixel's square; that part of the camera's way counts. Floats have 24 bits.
+        const double nearer = pixel * pixel / 4 * std::sqrt(dot(way, way)) / moved[i].depth / pixel;
+        const double tolerance = 2 * nearer + 1e-4;
+        EXPECT_NEAR(moved[i].motion.x, x, tolerance) << i;
+        EXPECT_NEAR(moved[i].motion.y, y, tolerance) << i;
+        far += std::hypot(x, y) > 0.5;
+    }
+    EXPECT_GT(far, moved.size() / 4);
 }
 
 /// The player as a program, in mode direct, which starts fast.

@@ -71,6 +71,14 @@ struct TextureDrawParams
 };
 GPU_SIZE(TextureDrawParams, 12);
 
+struct TexturePlace // in surface coordinates
+{
+    vec2 uv;
+    vec2 axis_a; // conjugate diameters of what is seen at once
+    vec2 axis_b;
+};
+GPU_SIZE(TexturePlace, 24);
+
 struct LightDraw
 {
     vec3 direction;
