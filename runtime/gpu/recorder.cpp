@@ -4,12 +4,20 @@
 
 #include <algorithm>
 #include <array>
+#include <ctime>
 
 namespace
 {
 constexpr uint32_t kMaxTimestamps = 8192; // the reference at its greatest depth takes 6 a vertex
 constexpr uint64_t kMostInline = 65536;   // bytes that a command buffer itself takes for a write (vkCmdUpdateBuffer)
 constexpr uint64_t kStagingBytes = uint64_t(1) << 20;
+
+double cpuMs()
+{
+    timespec now{};
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+    return double(now.tv_sec) * 1e3 + double(now.tv_nsec) * 1e-6;
+}
 } // namespace
 
 Recorder::Recorder(const Device& device) : device_(device)
@@ -49,12 +57,19 @@ void Recorder::begin(const SceneSet& scene)
     staged_.assign(staging_.size(), 0);
     read_.clear();
     written_.clear();
+    beginCommands();
+    vkCmdResetQueryPool(commands_, queries_, 0, kMaxTimestamps);
+    barrier(); // whatever an earlier submission left in flight
+    if (trace_)
+        trace_->begin();
+}
+
+void Recorder::beginCommands()
+{
     vulkanCheck(vkResetCommandPool(device_.handle(), pool_, 0));
     const VkCommandBufferBeginInfo info{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
                                         .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT};
     vulkanCheck(vkBeginCommandBuffer(commands_, &info));
-    vkCmdResetQueryPool(commands_, queries_, 0, kMaxTimestamps);
-    barrier(); // whatever an earlier submission left in flight
 }
 
 uint32_t Recorder::timestamp()
@@ -122,6 +137,7 @@ void Recorder::note(const Buffer& buffer, bool reads, bool writes)
 void Recorder::prepare(const Kernel& kernel, const void* params, size_t param_bytes,
                        std::initializer_list<Binding> bindings, const Buffer* arguments)
 {
+    beginTraced();
     const KernelCode& code = kernel.code();
     check(param_bytes == code.push_bytes, "{}: {} bytes of parameters given, the kernel has {}", code.name, param_bytes,
           code.push_bytes);
@@ -185,6 +201,53 @@ void Recorder::prepare(const Kernel& kernel, const void* params, size_t param_by
         push_descriptors_(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.layout(), 1, count, writes.data());
     if (param_bytes > 0)
         vkCmdPushConstants(commands_, kernel.layout(), VK_SHADER_STAGE_COMPUTE_BIT, 0, uint32_t(param_bytes), params);
+    uint64_t bytes = 0;
+    for (const Binding& binding : bindings)
+        bytes += binding.buffer.size();
+    startTraced(code.name, bytes);
+}
+
+void Recorder::flush()
+{
+    vulkanCheck(vkEndCommandBuffer(commands_));
+    vulkanCheck(vkResetFences(device_.handle(), 1, &fence_));
+    const VkSubmitInfo info{
+        .sType = VK_STRUCTURE_TYPE_SUBMIT_INFO, .commandBufferCount = 1, .pCommandBuffers = &commands_};
+    vulkanCheck(vkQueueSubmit(device_.queue(), 1, &info, fence_));
+    vulkanCheck(vkWaitForFences(device_.handle(), 1, &fence_, VK_TRUE, UINT64_MAX));
+    beginCommands();
+}
+
+void Recorder::beginTraced()
+{
+    if (!trace_ || !trace_->alone_)
+        return;
+    flush();
+    cpu_begin_ms_ = cpuMs();
+}
+
+void Recorder::startTraced(std::string_view name, uint64_t bytes)
+{
+    if (trace_)
+        trace_->add(name, scopeName(), bytes, timestamp());
+}
+
+void Recorder::endTraced(uint32_t groups, const Buffer* size, uint64_t offset)
+{
+    if (!trace_)
+        return;
+    trace_->timestamps_.back().last = timestamp();
+    trace_->commands_.back().groups = groups;
+    if (trace_->alone_)
+    {
+        flush();
+        trace_->commands_.back().cpu_ms = cpuMs() - cpu_begin_ms_;
+    }
+    const uint64_t index = trace_->commands_.size() - 1;
+    if (!size || index >= CommandTrace::kMost)
+        return;
+    const VkBufferCopy region{.srcOffset = offset, .dstOffset = index * sizeof(uint32_t), .size = sizeof(uint32_t)};
+    vkCmdCopyBuffer(commands_, size->handle(), trace_->groups_.handle(), 1, &region);
 }
 
 void Recorder::dispatch(const Kernel& kernel, uint32_t thread_count)
@@ -193,6 +256,7 @@ void Recorder::dispatch(const Kernel& kernel, uint32_t thread_count)
     check(groups <= device_.limits().maxComputeWorkGroupCount[0], "{}: {} groups", kernel.code().name, groups);
     if (groups > 0)
         vkCmdDispatch(commands_, groups, 1, 1);
+    endTraced(groups);
 }
 
 void Recorder::dispatchIndirect(const Kernel& kernel, const Buffer& size)
@@ -205,25 +269,33 @@ void Recorder::dispatchIndirect(const Kernel& kernel, const Buffer& size)
         ++row;
     check(row < gpu::kQueueRows, "{}: a QueueSize has no dispatch for groups of {} threads", code.name,
           code.group_size);
-    vkCmdDispatchIndirect(commands_, size.handle(), offsetof(gpu::QueueSize, groups) + row * sizeof(gpu::uvec3));
+    const uint64_t offset = offsetof(gpu::QueueSize, groups) + row * sizeof(gpu::uvec3);
+    vkCmdDispatchIndirect(commands_, size.handle(), offset);
+    endTraced(0, &size, offset);
 }
 
 void Recorder::fill(const Buffer& buffer, uint32_t word)
 {
+    beginTraced();
     if (conflicts(buffer, true))
         barrier();
     note(buffer, false, true);
+    startTraced("fill", buffer.size());
     vkCmdFillBuffer(commands_, buffer.handle(), 0, VK_WHOLE_SIZE, word);
+    endTraced(0);
 }
 
 void Recorder::copy(const Buffer& from, const Buffer& to, uint64_t bytes, uint64_t to_offset)
 {
+    beginTraced();
     if (conflicts(from, false) || conflicts(to, true))
         barrier();
     note(from, true, false);
     note(to, false, true);
+    startTraced("copy", bytes);
     const VkBufferCopy region{.dstOffset = to_offset, .size = bytes};
     vkCmdCopyBuffer(commands_, from.handle(), to.handle(), 1, &region);
+    endTraced(0);
 }
 
 void Recorder::write(const Buffer& to, uint64_t offset, std::span<const std::byte> bytes)
@@ -232,14 +304,20 @@ void Recorder::write(const Buffer& to, uint64_t offset, std::span<const std::byt
           offset, to.name(), to.size());
     if (bytes.empty())
         return;
+    beginTraced();
     if (conflicts(to, true))
         barrier();
     note(to, false, true);
+    startTraced("write", bytes.size());
     if (bytes.size() <= kMostInline)
-        return vkCmdUpdateBuffer(commands_, to.handle(), offset, bytes.size(), bytes.data());
-    const auto [from, from_offset] = stage(bytes);
-    const VkBufferCopy region{.srcOffset = from_offset, .dstOffset = offset, .size = bytes.size()};
-    vkCmdCopyBuffer(commands_, from, to.handle(), 1, &region);
+        vkCmdUpdateBuffer(commands_, to.handle(), offset, bytes.size(), bytes.data());
+    else
+    {
+        const auto [from, from_offset] = stage(bytes);
+        const VkBufferCopy region{.srcOffset = from_offset, .dstOffset = offset, .size = bytes.size()};
+        vkCmdCopyBuffer(commands_, from, to.handle(), 1, &region);
+    }
+    endTraced(0);
 }
 
 std::pair<VkBuffer, uint64_t> Recorder::stage(std::span<const std::byte> bytes)
@@ -295,13 +373,18 @@ std::vector<StageTime> Recorder::wait()
         vulkanCheck(vkGetQueryPoolResults(device_.handle(), queries_, 0, query_count_, ticks.size() * sizeof(uint64_t),
                                           ticks.data(), sizeof(uint64_t),
                                           VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT));
+    std::vector<double> ms;
+    for (const uint64_t tick : ticks)
+        ms.push_back(double(tick - ticks[0]) * device_.limits().timestampPeriod * 1e-6);
+    if (trace_)
+        trace_->end(ms);
     std::vector<StageTime> times;
     for (const ScopeRecord& record : scopes_)
     {
         auto entry = std::ranges::find(times, record.name, &StageTime::name);
         if (entry == times.end())
             entry = times.insert(times.end(), StageTime{.name = record.name});
-        entry->ms += double(ticks[record.last] - ticks[record.first]) * device_.limits().timestampPeriod * 1e-6;
+        entry->ms += ms[record.last] - ms[record.first];
     }
     return times;
 }

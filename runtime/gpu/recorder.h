@@ -1,5 +1,6 @@
 // Records GPU work and submits it. Barriers come from what each kernel declares readonly and writeonly.
 #pragma once
+#include "runtime/gpu/command_trace.h"
 #include "runtime/gpu/device.h"
 
 #include <initializer_list>
@@ -93,6 +94,9 @@ public:
     /// @return the time of each scope, in order of first appearance
     std::vector<StageTime> submitAndWait();
 
+    /// Notes every command from the next begin() on; null ends that.
+    void traceInto(CommandTrace* trace) { trace_ = trace; }
+
     /// Barriers since begin(), that of begin() included.
     uint32_t barrierCount() const { return barrier_count_; }
     /// The command buffer being recorded, for the swapchain and the user interface.
@@ -111,6 +115,14 @@ private:
                  const Buffer* arguments);
     void dispatch(const Kernel& kernel, uint32_t thread_count);
     void dispatchIndirect(const Kernel& kernel, const Buffer& size);
+    // Around each command, where there is a trace: before its barrier, right before it, right after it.
+    void beginTraced();
+    void startTraced(std::string_view name, uint64_t bytes);
+    /// @param size where the GPU knows the groups, at `offset` in it; else null
+    void endTraced(uint32_t groups, const Buffer* size = nullptr, uint64_t offset = 0);
+    /// Submits what is recorded so far and waits for it.
+    void flush();
+    void beginCommands();
     bool conflicts(const Buffer& buffer, bool writes) const;
     void note(const Buffer& buffer, bool reads, bool writes);
     void barrier();
@@ -143,4 +155,6 @@ private:
     std::vector<ScopeRecord> scopes_;
     std::vector<size_t> open_scopes_;
     uint32_t query_count_ = 0;
+    CommandTrace* trace_ = nullptr;
+    double cpu_begin_ms_ = 0; // of the command that is traced
 };

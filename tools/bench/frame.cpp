@@ -2,6 +2,7 @@
 
 #include "runtime/renderer.h"
 #include "tools/bench/changing_lights.h"
+#include "tools/bench/kernels.h"
 #include "tools/bench/paths.h"
 #include "tools/bench/played_animation.h"
 #include "tools/bench/rays.h"
@@ -21,6 +22,7 @@ struct Measurement
     std::vector<double> record_ms, wall_ms; // on the CPU: recording; from its begin to the finished frame
     uint64_t device_bytes = 0;
     std::vector<RayTally::Entry> rays; // of one frame
+    std::optional<CommandSamples> commands;
 };
 
 double since(std::chrono::steady_clock::time_point start)
@@ -69,6 +71,10 @@ Measurement measure(const OpenedPackage& opened, PlayedAnimation& animation, con
         result.stages.add(times);
     }
     result.device_bytes = opened.device->allocatedBytes();
+
+    const uint32_t end = options.warm_up + options.frames;
+    if (options.kernels)
+        result.commands = CommandSamples::measure(*opened.device, rec, record, end, options.frames);
 
     RayTally tally(*opened.device); // on a frame of its own: counting takes time
     renderer.countRays(&tally);
@@ -134,6 +140,8 @@ void printJson(const FrameBenchOptions& options, const OpenedPackage& opened, co
                                 {"count", rays.ray_count},
                                 {"floor_ms", floorMs(rays, throughput)}});
     json["floor_ms"] = floorMs(result, throughput);
+    if (result.commands)
+        json["commands"] = result.commands->json();
     fmt::print("{}\n", json.dump(2));
 }
 
@@ -157,6 +165,8 @@ void print(const FrameBenchOptions& options, const OpenedPackage& opened, const 
                    rays.ray_count, throughput.megaraysPerSecond(kindOf(rays)), floorMs(rays, throughput));
     const double floor = floorMs(result, throughput), frame = result.stages.median("frame");
     fmt::print("  tracing them alone would take {:.3f} ms, {:.1f} % of the median frame\n", floor, 100 * floor / frame);
+    if (result.commands)
+        result.commands->print();
 }
 } // namespace
 

@@ -10,6 +10,7 @@ struct FrameBenchOptions : BenchOptions
     uint32_t warm_up = 8;        // before them
     std::string moving = "both"; // camera, lights, both, nothing
     std::string animation;       // that plays, 60 frames a second; empty: none
+    bool kernels = false;        // print every command of a frame too
     Settings settings;
 };
 

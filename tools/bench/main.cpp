@@ -75,6 +75,7 @@ void addPackageCommands(CLI::App& app, CommandLine& line)
     frame->add_option("--moving", line.frame.moving, "what moves from frame to frame")
         ->check(CLI::IsMember({"both", "camera", "lights", "nothing"}))
         ->capture_default_str();
+    frame->add_flag("--kernels", line.frame.kernels, "print every dispatch of a frame, and the gaps between them");
 
     CLI::App* converge = addPackageCommand(
         app, "converge", "seconds and errors against a reference after 1, 2, 4, ... frames", line.converge);
