@@ -10,6 +10,7 @@
 #include <climits>
 #include <csignal>
 #include <cstring>
+#include <utility>
 
 namespace
 {
@@ -50,19 +51,24 @@ void forgetOpen(const char* path)
             file.state = OpenFile::kFree;
 }
 
-void removeOpenFiles(int signal)
+void removeOpenFilesAndEnd(int signal)
 {
-    for (OpenFile& file : open_files)
-        if (file.state == OpenFile::kOpen)
-            unlink(file.path.data());
+    removeOpenTemporaryFiles();
     raise(signal); // the handler is in force once only, so that this one ends the program
 }
 } // namespace
 
+void removeOpenTemporaryFiles()
+{
+    for (OpenFile& file : open_files)
+        if (file.state == OpenFile::kOpen)
+            unlink(file.path.data());
+}
+
 void removeTemporaryFilesOnSignals()
 {
     struct sigaction action = {};
-    action.sa_handler = removeOpenFiles;
+    action.sa_handler = removeOpenFilesAndEnd;
     action.sa_flags = int(SA_RESETHAND | SA_NODEFER);
     for (const int signal : {SIGINT, SIGTERM, SIGHUP})
     {
@@ -84,13 +90,16 @@ TemporaryFile::TemporaryFile(const std::filesystem::path& target) : target_(targ
     }
     if (descriptor_ >= 0)
         rememberOpen(path_.c_str());
+    else
+        path_.clear(); // there is nothing to remove
 }
 
 TemporaryFile::~TemporaryFile()
 {
-    if (descriptor_ < 0)
+    if (path_.empty())
         return;
-    close(descriptor_);
+    if (descriptor_ >= 0)
+        close(descriptor_);
     if (!committed_)
         unlink(path_.c_str());
     forgetOpen(path_.c_str());
@@ -114,7 +123,11 @@ bool TemporaryFile::append(std::span<const std::byte> bytes)
 bool TemporaryFile::commit(Durability durability)
 {
     const bool on_disk = durability == Durability::kOnDisk;
-    if ((on_disk && fsync(descriptor_) != 0) || rename(path_.c_str(), target_.c_str()) != 0)
+    if (on_disk && fsync(descriptor_) != 0)
+        return false;
+    if (close(std::exchange(descriptor_, -1)) != 0) // a share may tell only now that its disk is full
+        return false;
+    if (rename(path_.c_str(), target_.c_str()) != 0)
         return false;
     committed_ = true;
     if (!on_disk)

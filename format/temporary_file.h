@@ -39,3 +39,6 @@ private:
 
 /// From here on SIGINT, SIGTERM and SIGHUP remove all temporary files that are open, then end the program as ever.
 void removeTemporaryFilesOnSignals();
+
+/// Removes all that are open, for a program that ends without cleaning up. May be called by a signal's handler.
+void removeOpenTemporaryFiles();

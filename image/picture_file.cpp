@@ -3,6 +3,7 @@
 #include "format/mapped_file.h"
 #include "image/exr_headers.h"
 #include "image/exr_stream.h"
+#include "image/png_chunks.h"
 
 #include <OpenEXR/ImfInputFile.h>
 
@@ -21,35 +22,22 @@ bool beginsWith(Bytes file, std::span<const uint8_t> magic)
                       [](std::byte a, uint8_t b) { return uint8_t(a) == b; });
 }
 
-uint32_t bigEndian(Bytes file, size_t at)
-{
-    uint32_t value = 0;
-    for (size_t i = 0; i < 4; ++i)
-        value = value << 8 | uint32_t(file[at + i]);
-    return value;
-}
-
-/// Follows the chunks: length, type, data, checksum.
 PictureState pngState(Bytes file, uint32_t width, uint32_t height)
 {
-    constexpr std::array<uint8_t, 8> kMagic{0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
-    constexpr uint32_t kHeader = 0x49484452, kEnd = 0x49454e44; // IHDR, IEND
-    constexpr size_t kOverhead = 12;
-    if (!beginsWith(file, kMagic))
+    if (!beginsWith(file, kPngMagic))
         return PictureState::kOther;
-    for (size_t at = kMagic.size(); file.size() >= at + kOverhead;)
-    {
-        const uint64_t length = bigEndian(file, at);
-        const uint32_t type = bigEndian(file, at + 4);
-        if (length > file.size() - at - kOverhead)
-            return PictureState::kIncomplete;
-        if (type == kHeader && length >= 8 && (bigEndian(file, at + 8) != width || bigEndian(file, at + 12) != height))
-            return PictureState::kOther;
-        if (type == kEnd)
-            return PictureState::kWhole;
-        at += kOverhead + length;
-    }
-    return PictureState::kIncomplete;
+    PictureState state = PictureState::kIncomplete;
+    forEachPngChunk(file,
+                    [&](uint32_t type, Bytes data)
+                    {
+                        if (type == kPngHeader && data.size() >= 8 &&
+                            (bigEndian(data, 0) != width || bigEndian(data, 4) != height))
+                            state = PictureState::kOther;
+                        else if (type == kPngEnd)
+                            state = PictureState::kWhole;
+                        return state == PictureState::kIncomplete;
+                    });
+    return state;
 }
 
 /// The library has the table of blocks checked; the last of them, at the end of the file, must be all there.

@@ -1,21 +1,22 @@
 #include "image/write_image.h"
 
 #include "format/check.h"
+#include "format/temporary_file.h"
+#include "image/png_chunks.h"
 
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfOutputFile.h>
 #include <OpenEXR/ImfStdIO.h>
+#include <OpenEXR/ImfStringAttribute.h>
 #include <half.h>
 #include <stb_image_write.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
-#include <cstdio>
 #include <cstring>
-#include <unistd.h>
 
 namespace
 {
@@ -51,6 +52,40 @@ void insertLayer(const ExrLayer& layer, uint32_t width, const void* values, Imf:
     }
 }
 
+/// The checksum of PNG chunks: CRC-32 (ISO 3309), bit by bit as texts are short.
+uint32_t checksum(std::span<const uint8_t> bytes)
+{
+    uint32_t crc = ~0u;
+    for (const uint8_t byte : bytes)
+    {
+        crc ^= byte;
+        for (int bit = 0; bit < 8; ++bit)
+            crc = crc >> 1 ^ (crc & 1 ? 0xedb88320u : 0);
+    }
+    return ~crc;
+}
+
+std::vector<uint8_t> pngNoteChunks(std::span<const PictureNote> notes)
+{
+    std::vector<uint8_t> bytes;
+    const auto append = [&](uint32_t number)
+    {
+        for (const int shift : {24, 16, 8, 0})
+            bytes.push_back(uint8_t(number >> shift));
+    };
+    for (const PictureNote& note : notes)
+    {
+        append(uint32_t(note.name.size() + 1 + note.value.size()));
+        const size_t checked = bytes.size();
+        append(kPngText);
+        bytes.insert(bytes.end(), note.name.begin(), note.name.end());
+        bytes.push_back(0);
+        bytes.insert(bytes.end(), note.value.begin(), note.value.end());
+        append(checksum(std::span(bytes).subspan(checked)));
+    }
+    return bytes;
+}
+
 } // namespace
 
 Status writeFile(const std::filesystem::path& path, std::span<const uint8_t> bytes)
@@ -59,36 +94,25 @@ Status writeFile(const std::filesystem::path& path, std::span<const uint8_t> byt
     if (std::filesystem::is_directory(path, ignored))
         return Error{ExitCode::kIo, "The output path is a folder; give a file name."};
 
-    std::filesystem::path temporary = path;
-    temporary += fmt::format(".{}.tmp", ::getpid());
-    std::FILE* file = std::fopen(temporary.c_str(), "wb");
-    if (!file)
+    TemporaryFile file(path);
+    if (!file.isOpen())
         return cannotWrite("created");
-    bool good = std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size();
-    good = std::fflush(file) == 0 && good;
-    const int write_error = errno;
-    good = std::fclose(file) == 0 && good;
-    if (!good)
-    {
-        const Error error{ExitCode::kIo, fmt::format("The file cannot be written: {}.", std::strerror(write_error))};
-        std::filesystem::remove(temporary, ignored);
-        return error;
-    }
-    if (std::rename(temporary.c_str(), path.c_str()) != 0)
-    {
-        const Error error = cannotWrite("put in place");
-        std::filesystem::remove(temporary, ignored);
-        return error;
-    }
+    if (!file.append(std::as_bytes(bytes)))
+        return cannotWrite("written");
+    if (!file.commit(Durability::kUntilPowerCut)) // whoever looks for pictures finds out whether they are whole
+        return cannotWrite("put in place");
     return Success{};
 }
 
-Status writeExr(const std::filesystem::path& path, uint32_t width, uint32_t height, std::span<const ExrLayer> layers)
+Status writeExr(const std::filesystem::path& path, uint32_t width, uint32_t height, std::span<const ExrLayer> layers,
+                std::span<const PictureNote> notes)
 {
     try
     {
         Imf::Header header{int(width), int(height)};
         header.compression() = Imf::ZIP_COMPRESSION;
+        for (const PictureNote& note : notes)
+            header.insert(note.name, Imf::StringAttribute(note.value));
         Imf::FrameBuffer source;
         std::vector<std::vector<Imath::half>> halves; // what slices point to
         for (const ExrLayer& layer : layers)
@@ -115,14 +139,15 @@ Status writeExr(const std::filesystem::path& path, uint32_t width, uint32_t heig
     }
 }
 
-Status writeExr(const std::filesystem::path& path, const ImageF& image)
+Status writeExr(const std::filesystem::path& path, const ImageF& image, std::span<const PictureNote> notes)
 {
     check(image.width > 0 && image.height > 0, "{} x {} pixels", image.width, image.height);
     const ExrLayer layer{.name = "", .channels = "RGB", .values = image.rgb};
-    return writeExr(path, image.width, image.height, {&layer, 1});
+    return writeExr(path, image.width, image.height, {&layer, 1}, notes);
 }
 
-std::vector<uint8_t> encodePng(uint32_t width, uint32_t height, uint32_t channel_count, std::span<const uint8_t> texels)
+std::vector<uint8_t> encodePng(uint32_t width, uint32_t height, uint32_t channel_count, std::span<const uint8_t> texels,
+                               std::span<const PictureNote> notes)
 {
     check(channel_count >= 1 && channel_count <= 4 && texels.size() == size_t(width) * height * channel_count,
           "{} x {} pixels, {} channels, {} bytes", width, height, channel_count, texels.size());
@@ -136,13 +161,15 @@ std::vector<uint8_t> encodePng(uint32_t width, uint32_t height, uint32_t channel
     const int written = stbi_write_png_to_func(append, &bytes, int(width), int(height), int(channel_count),
                                                texels.data(), int(width * channel_count));
     check(written != 0, "PNG encoder failed on {} x {} pixels", width, height);
+    const std::vector<uint8_t> chunks = pngNoteChunks(notes);
+    bytes.insert(bytes.begin() + kPngMagic.size() + kPngChunkOverhead + kPngHeaderBytes, chunks.begin(), chunks.end());
     return bytes;
 }
 
 Status writePng(const std::filesystem::path& path, uint32_t width, uint32_t height, uint32_t channel_count,
-                std::span<const uint8_t> texels)
+                std::span<const uint8_t> texels, std::span<const PictureNote> notes)
 {
-    return writeFile(path, encodePng(width, height, channel_count, texels));
+    return writeFile(path, encodePng(width, height, channel_count, texels, notes));
 }
 
 uint8_t srgbByte(float linear)

@@ -15,7 +15,7 @@ Status checkPicturePath(const std::filesystem::path& path)
 namespace
 {
 Status capturePng(const std::filesystem::path& path, Renderer& renderer, const Device& device, const SceneGpu& scene,
-                  const Settings& settings)
+                  const Settings& settings, std::span<const PictureNote> notes)
 {
     Recorder rec(device);
     rec.begin(scene.descriptorSet());
@@ -28,7 +28,7 @@ Status capturePng(const std::filesystem::path& path, Renderer& renderer, const D
     for (const uint32_t pixel : rgba)
         for (const uint32_t shift : {0u, 8u, 16u})
             rgb.push_back(uint8_t(pixel >> shift));
-    return writePng(path, renderer.width(), renderer.height(), 3, rgb);
+    return writePng(path, renderer.width(), renderer.height(), 3, rgb, notes);
 }
 /// A layer's name, its channels and their values, interleaved.
 struct LayerValues
@@ -112,7 +112,7 @@ LayerValues layerOf(const std::string& name, std::span<const gpu::LayerSums> sum
 }
 
 Status captureLayers(const std::filesystem::path& path, const Renderer& renderer, const Device& device,
-                     std::span<const std::string> names)
+                     std::span<const std::string> names, std::span<const PictureNote> notes)
 {
     const std::vector<gpu::LayerSums> sums = renderer.layerSums(device);
     std::vector<LayerValues> values;
@@ -121,19 +121,19 @@ Status captureLayers(const std::filesystem::path& path, const Renderer& renderer
     std::vector<ExrLayer> layers;
     for (const LayerValues& layer : values)
         layers.push_back({layer.name, layer.channels, layer.values, layer.half});
-    return writeExr(path, renderer.width(), renderer.height(), layers);
+    return writeExr(path, renderer.width(), renderer.height(), layers, notes);
 }
 } // namespace
 
 Status capture(const std::filesystem::path& path, Renderer& renderer, const Device& device, const SceneGpu& scene,
-               const Settings& settings, std::span<const std::string> layers)
+               const Settings& settings, std::span<const std::string> layers, std::span<const PictureNote> notes)
 {
     if (!layers.empty())
-        return captureLayers(path, renderer, device, layers);
+        return captureLayers(path, renderer, device, layers, notes);
     if (path.extension() == ".png")
-        return capturePng(path, renderer, device, scene, settings);
+        return capturePng(path, renderer, device, scene, settings, notes);
     ImageF image{.width = renderer.width(), .height = renderer.height()};
     for (const gpu::vec3& pixel : renderer.picture(device))
         image.rgb.insert(image.rgb.end(), {pixel.x, pixel.y, pixel.z});
-    return writeExr(path, image);
+    return writeExr(path, image, notes);
 }

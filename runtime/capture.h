@@ -1,5 +1,6 @@
 // Pictures out of the player.
 #pragma once
+#include "image/picture_notes.h"
 #include "runtime/renderer.h"
 
 #include <array>
@@ -20,6 +21,8 @@ inline constexpr std::array<std::string_view, 10> kLayerNames{"beauty", "emissio
                                                               "glossy", "albedo",   "normal", "depth",    "motion"};
 
 /// Writes the picture so far: .exr linear radiance, 32-bit; .png exposed and tone-mapped.
+/// @param notes for its header
 /// @param layers of kLayerNames, in place of the picture alone; only of .exr, and renderer.keepLayers() came before
 Status capture(const std::filesystem::path& path, Renderer& renderer, const Device& device, const SceneGpu& scene,
-               const Settings& settings, std::span<const std::string> layers = {});
+               const Settings& settings, std::span<const std::string> layers = {},
+               std::span<const PictureNote> notes = {});

@@ -42,9 +42,9 @@ std::filesystem::path FrameFiles::of(uint32_t frame) const
     return folder_ / fmt::format("{}{:0{}}{}", before_, frame, digits_, after_);
 }
 
-Result<std::vector<uint32_t>> FrameFiles::missing(FrameRange range, uint32_t width, uint32_t height) const
+Result<FramesThere> FrameFiles::look(NumberRange range, uint32_t width, uint32_t height) const
 {
-    std::vector<uint32_t> frames;
+    FramesThere frames;
     for (uint32_t i = 0; i < range.count(); ++i)
     {
         const uint32_t frame = range.first + i;
@@ -56,8 +56,7 @@ Result<std::vector<uint32_t>> FrameFiles::missing(FrameRange range, uint32_t wid
                     "is there already and is no frame of {}x{} pixels; move it away, or give --force to replace it",
                     width, height),
                 of(frame).string()};
-        if (state != PictureState::kWhole)
-            frames.push_back(frame);
+        (state == PictureState::kWhole ? frames.whole : frames.missing).push_back(frame);
     }
     return frames;
 }

@@ -6,10 +6,16 @@
 #include <filesystem>
 #include <vector>
 
-struct FrameRange
+struct NumberRange
 {
     uint32_t first = 0, last = 0; // both included
     uint32_t count() const { return last - first + 1; }
+};
+
+/// Numbers of frames, ascending.
+struct FramesThere
+{
+    std::vector<uint32_t> whole, missing; // missing: not there, or not whole
 };
 
 class FrameFiles
@@ -21,9 +27,8 @@ public:
 
     std::filesystem::path of(uint32_t frame) const;
 
-    /// Frames of `range` that are not there or not whole. The disk alone is asked.
-    /// @return kIo naming a file that is there and is no frame of width x height pixels
-    Result<std::vector<uint32_t>> missing(FrameRange range, uint32_t width, uint32_t height) const;
+    /// Looks on the disk which of `range` are there. @return kIo naming a file that is no frame of width x height pixels
+    Result<FramesThere> look(NumberRange range, uint32_t width, uint32_t height) const;
 
 private:
     std::filesystem::path folder_;

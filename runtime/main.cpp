@@ -4,6 +4,7 @@
 #include "runtime/capture.h"
 #include "runtime/headless.h"
 #include "runtime/opened_scene.h"
+#include "runtime/reference_part.h"
 #include "runtime/sequence.h"
 #include "runtime/windowed.h"
 #undef check
@@ -44,31 +45,54 @@ Status parseSize(const std::string& text, PlayerOptions& options)
     return Success{};
 }
 
+/// A number from `begin` to `end` of the text, all of it.
+std::optional<uint32_t> numberIn(const std::string& text, size_t begin, size_t end)
+{
+    uint32_t value = 0;
+    const auto [stop, error] = std::from_chars(text.data() + begin, text.data() + end, value);
+    return error == std::errc() && stop == text.data() + end ? std::optional(value) : std::nullopt;
+}
+
+/// "A-B". @param what are numbered, for a sentence
+Result<NumberRange> parseRange(const std::string& text, const std::string& option, const char* what, const char* wanted)
+{
+    constexpr uint32_t kMost = 9999999; // of a sequence: more files than that no folder should hold
+    const size_t dash = text.find('-');
+    const auto first = dash == std::string::npos ? std::nullopt : numberIn(text, 0, dash);
+    const auto last = first ? numberIn(text, dash + 1, text.size()) : std::nullopt;
+    if (!last || *last > kMost)
+        return Error{ExitCode::kUsage, fmt::format("{}: '{}' is {}, up to {}", option, text, wanted, kMost)};
+    if (*last < *first)
+        return Error{ExitCode::kUsage, fmt::format("{}: the last {} of {} comes before the first", option, what, text)};
+    return NumberRange{*first, *last};
+}
+
 /// "N", a count, or "A-B", of a sequence.
 Status parseFrames(const std::string& text, PlayerOptions& options)
 {
-    constexpr uint32_t kMost = 9999999; // of a sequence: more files than that no folder should hold
-    const auto number = [&](size_t begin, size_t end) -> std::optional<uint32_t>
-    {
-        uint32_t value = 0;
-        const auto [stop, error] = std::from_chars(text.data() + begin, text.data() + end, value);
-        return error == std::errc() && stop == text.data() + end ? std::optional(value) : std::nullopt;
-    };
-    if (const auto count = number(0, text.size()); count && *count > 0)
+    if (const auto count = numberIn(text, 0, text.size()); count && *count > 0)
     {
         options.frame_count = *count;
         return Success{};
     }
-    const size_t dash = text.find('-');
-    const auto first = dash == std::string::npos ? std::nullopt : number(0, dash);
-    const auto last = first ? number(dash + 1, text.size()) : std::nullopt;
-    if (!last || *last > kMost)
+    const auto range = parseRange(text, "--frames", "frame", "neither a count, 1 or more, nor a range such as 0-239");
+    if (!range)
+        return range.error();
+    options.sequence = *range;
+    return Success{};
+}
+
+Status parseSamples(const std::string& text, PlayerOptions& options)
+{
+    const auto range = parseRange(text, "--samples", "sample", "no range such as 0-63");
+    if (!range)
+        return range.error();
+    options.samples = *range;
+    if (!options.headless || options.mode != Mode::kReference || options.output.extension() != ".exr")
+        return Error{ExitCode::kUsage, "--samples is of one picture: --headless --mode reference --output FILE.exr"};
+    if (options.list_missing || options.sequence || options.frame_count > 0 || options.sample_count > 0)
         return Error{ExitCode::kUsage,
-                     fmt::format("--frames: '{}' is neither a count, 1 or more, nor a range such as 0-239, up to {}",
-                                 text, kMost)};
-    if (*last < *first)
-        return Error{ExitCode::kUsage, fmt::format("--frames: the last frame of {} comes before the first", text)};
-    options.sequence = FrameRange{*first, *last};
+                     "--samples says how much to render; leave --frames, --spp and --list-missing out"};
     return Success{};
 }
 
@@ -78,7 +102,7 @@ Status checkSequence(const PlayerOptions& options, const std::string& given)
     const auto usage = [](std::string sentence) { return Error{ExitCode::kUsage, std::move(sentence)}; };
     if (!options.path.empty() && !options.camera.empty())
         return usage("--path and --camera both say where the camera is; give one");
-    if (!options.sequence && !given.empty())
+    if (!options.sequence && !given.empty() && !(options.samples && given == "--force"))
         return usage(fmt::format("{} is for sequences: --headless --frames A-B", given));
     if (options.headless && !options.sequence && !options.path.empty())
         return usage("--path with --headless needs the frames to render: --frames A-B");
@@ -130,11 +154,13 @@ int main(int argc, char** argv)
     app.set_version_flag("--version", "lumicut-play " LUMICUT_VERSION);
     app.footer(
         "Settings (--set name=value):\n" + describeSettings() +
-        "Exit codes: 0 ok, 1 usage, 2 I/O, 3 invalid package, 4 no suitable device or out of memory, 5 unsupported;\n"
-        "128 + N: signal N ended a sequence, whose frames so far are whole.");
+        "Exit codes: 0 ok, 1 usage, 2 I/O, 3 invalid package, 4 no suitable device or out of memory, 5 unsupported,\n"
+        "75 the device was lost or its memory full: another try may succeed; 128 + N: signal N ended a sequence, "
+        "whose\n"
+        "frames so far are whole.");
     addDocumentation(app);
     PlayerOptions options;
-    std::string size = "1280x720", frames, mode = "gi", view;
+    std::string size = "1280x720", frames, samples, mode = "gi", view;
     bool list_devices = false;
     app.add_option("package", options.package, "the .lumi file");
     app.add_flag("--headless", options.headless, "render without a window");
@@ -143,6 +169,8 @@ int main(int argc, char** argv)
         "--frames", frames, "how many to render (headless default 1; in a window: no end), or A-B, a sequence");
     app.add_option("--spp", options.sample_count, "samples a pixel to render, of a sequence in each frame")
         ->check(CLI::Range(1u, UINT32_MAX));
+    app.add_option("--samples", samples,
+                   "of mode reference: samples A-B of every pixel alone, for lumicut-compare merge to add to others");
     app.add_option("--output", options.output,
                    "picture to write at the end: .exr (linear) or .png; of a sequence as frame-%04d.exr");
     app.add_option("--layers", options.layers,
@@ -156,7 +184,7 @@ int main(int argc, char** argv)
         app.add_option("--fps", options.fps, "frames a second of the path and the animation, of a sequence")
             ->check(CLI::Range(0.001, 1e6))
             ->capture_default_str(),
-        app.add_flag("--force", options.force, "render frames of a sequence again that are there"),
+        app.add_flag("--force", options.force, "render frames or --samples again that are there"),
         app.add_flag("--list-missing", options.list_missing,
                      "print the frames of a sequence that are not there, render nothing")};
     app.add_option("--mode", mode, "gi, direct or reference")
@@ -199,6 +227,8 @@ int main(int argc, char** argv)
     Status status = parseSize(size, options);
     if (status && frames_option->count() > 0)
         status = parseFrames(frames, options);
+    if (status && !samples.empty())
+        status = parseSamples(samples, options);
     const auto given =
         std::ranges::find_if(sequence_options, [](const CLI::Option* option) { return option->count() > 0; });
     if (status)
@@ -208,6 +238,7 @@ int main(int argc, char** argv)
     if (!status)
         return fail("lumicut-play", status.error());
     status = options.sequence   ? playSequence(options)
+             : options.samples  ? playReferencePart(options)
              : options.headless ? playHeadless(options)
                                 : playWindowed(options);
     return status ? int(ExitCode::kOk) : fail(options.package.string(), status.error());

@@ -41,6 +41,7 @@ struct OpenedDevice
 {
     Instance instance;
     std::unique_ptr<Device> device;
+    std::string text; // name and driver
 };
 
 Result<OpenedDevice> openDevice(const PlayerOptions& options, std::span<const char* const> window_extensions)
@@ -48,13 +49,15 @@ Result<OpenedDevice> openDevice(const PlayerOptions& options, std::span<const ch
     auto instance = Instance::create({.validation = options.validation, .extensions = window_extensions});
     if (!instance)
         return instance.error();
-    const auto index = selectDevice(instance->devices(), options.device);
+    const std::vector<DeviceInfo> devices = instance->devices();
+    const auto index = selectDevice(devices, options.device);
     if (!index)
         return index.error();
     auto device = Device::create(*instance, *index, !window_extensions.empty());
     if (!device)
         return device.error();
-    return OpenedDevice{std::move(*instance), std::move(*device)};
+    return OpenedDevice{std::move(*instance), std::move(*device),
+                        fmt::format("{} ({})", devices[*index].name, devices[*index].driver)};
 }
 } // namespace
 
@@ -118,6 +121,7 @@ Result<OpenedScene> openScene(const PlayerOptions& options, std::span<const char
     statistics.ready_ms = statistics.elapsedMs();
     return OpenedScene{.instance = opened->instance,
                        .device = std::move(device),
+                       .device_text = std::move(opened->text),
                        .scene = std::move(*scene),
                        .package = std::move(kept),
                        .animation = std::move(animation),
@@ -141,6 +145,14 @@ double OpenedScene::animationTime(double seconds) const
 {
     const double duration = animation ? animation->duration(plays) : 0;
     return duration > 0 ? seconds - duration * std::floor(seconds / duration) : 0;
+}
+
+Result<PictureOrigin> originOf(const OpenedScene& opened, const PlayerOptions& options)
+{
+    auto origin = frameOrigin(options, opened.settings);
+    if (origin)
+        origin->device = opened.device_text;
+    return origin;
 }
 
 Status makeRenderer(std::optional<Renderer>& renderer, const OpenedScene& opened, Mode mode, uint32_t width,
@@ -172,10 +184,15 @@ Status writeResults(const PlayerOptions& options, const OpenedScene& opened, Ren
     }
     fmt::print(stderr, "{}\n", statistics.summary());
     if (!options.output.empty())
-        if (const Status status =
-                capture(options.output, renderer, *opened.device, *opened.scene, settings, options.layers);
+    {
+        const auto origin = originOf(opened, options);
+        if (!origin)
+            return origin.error();
+        if (const Status status = capture(options.output, renderer, *opened.device, *opened.scene, settings,
+                                          options.layers, originNotes(*origin));
             !status)
             return status.error().about(options.output.string());
+    }
     if (!options.stats.empty())
         if (const Status status = statistics.writeJson(options.stats); !status)
             return status.error().about(options.stats.string());

@@ -2,6 +2,7 @@
 #pragma once
 #include "runtime/animation.h"
 #include "runtime/camera_path.h"
+#include "runtime/frame_origin.h"
 #include "runtime/player_options.h"
 #include "runtime/statistics.h"
 
@@ -22,6 +23,7 @@ struct OpenedScene
 {
     Instance instance;
     std::unique_ptr<Device> device;
+    std::string device_text; // its name and driver
     std::unique_ptr<SceneGpu> scene;
     std::unique_ptr<package::Package> package; // where the animation needs it, else none
     std::unique_ptr<Animation> animation;      // none: the package has no motion
@@ -43,6 +45,9 @@ struct OpenedScene
 /// @param window_extensions what the window library needs of Vulkan; empty: the device will never show a window
 Result<OpenedScene> openScene(const PlayerOptions& options, std::span<const char* const> window_extensions,
                               Statistics& statistics);
+
+/// What its pictures are made from, and how.
+Result<PictureOrigin> originOf(const OpenedScene& opened, const PlayerOptions& options);
 
 /// A renderer for pictures of that size, with what its view error compares with.
 /// @return kDevice where they are too large for the device, leaving `renderer` empty

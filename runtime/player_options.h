@@ -14,15 +14,16 @@ struct PlayerOptions
     bool headless = false;
     uint32_t width = 1280; // pixels
     uint32_t height = 720;
-    uint32_t frame_count = 0;           // 0: --spp decides; without either, 1 headless and no end in a window
-    uint32_t sample_count = 0;          // samples a pixel, 0: one a frame
-    std::filesystem::path path;         // of the camera, .json; empty: it stands still, or flies by hand
-    std::optional<FrameRange> sequence; // headless: these frames along `path`, each into a file
-    double fps = 30;                    // frames a second of the path's time
-    bool force = false;                 // renders frames again that are there
-    bool list_missing = false;          // prints the numbers of frames that are not there, and renders nothing
-    std::filesystem::path output;       // .exr or .png, of a sequence with a place for the number; empty: none
-    std::vector<std::string> layers;    // of kLayerNames, that an .exr holds; empty: the picture alone
+    uint32_t frame_count = 0;            // 0: --spp decides; without either, 1 headless and no end in a window
+    uint32_t sample_count = 0;           // samples a pixel, 0: one a frame
+    std::optional<NumberRange> samples;  // mode reference: these alone of a picture, to be summed up with others
+    std::filesystem::path path;          // of the camera, .json; empty: it stands still, or flies by hand
+    std::optional<NumberRange> sequence; // headless: these frames along `path`, each into a file
+    double fps = 30;                     // frames a second of the path's time
+    bool force = false;                  // renders frames again that are there
+    bool list_missing = false;           // prints the numbers of frames that are not there, and renders nothing
+    std::filesystem::path output;        // .exr or .png, of a sequence with a place for the number; empty: none
+    std::vector<std::string> layers;     // of kLayerNames, that an .exr holds; empty: the picture alone
     Mode mode = Mode::kGi;
     std::string camera;    // name or index; empty: the first
     std::string animation; // name, index, all or none; empty: the first where a time is shown

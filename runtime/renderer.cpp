@@ -9,13 +9,6 @@ namespace
 constexpr uint64_t kLargestPixelBytes = sizeof(gpu::ShadingPoint); // of any stage's buffer
 static_assert(kLargestPixelBytes >= sizeof(gpu::ShadowRay) && kLargestPixelBytes >= sizeof(gpu::Ray));
 
-/// Small pictures leave a GPU idle: several samples a pixel side by side fill it. A CPU gains nothing by that.
-uint32_t batchFor(const Device& device, uint32_t pixel_count)
-{
-    constexpr uint32_t kPathsToFill = 1u << 20;
-    return device.isCpu() ? 1 : std::clamp(kPathsToFill / pixel_count, 1u, 64u);
-}
-
 /// Places within the pixel that fill it evenly however many successive ones are taken (Roberts 2018, the R2 sequence).
 gpu::vec2 jitterOf(uint32_t frame)
 {
@@ -33,6 +26,12 @@ bool sameView(const gpu::CameraParams& a, const gpu::CameraParams& b)
     return std::memcmp(&a, &b, sizeof(a)) == 0; // both from cameraParams(): sampling fields are equal
 }
 } // namespace
+
+uint32_t Renderer::batchFor(const Device& device, uint32_t pixel_count)
+{
+    constexpr uint32_t kPathsToFill = 1u << 20;
+    return device.isCpu() ? 1 : std::clamp(kPathsToFill / pixel_count, 1u, 64u);
+}
 
 Status Renderer::checkSize(const Device& device, uint32_t width, uint32_t height, Mode mode, const Settings& settings)
 {

@@ -44,6 +44,8 @@ public:
     /// The picture so far as 8-bit sRGB pixels, uint[width * height].
     const Buffer& display(Recorder& rec, const Settings& settings, bool bgra);
 
+    /// Small pictures leave a GPU idle: samples a pixel that fill it side by side in mode reference. A CPU gains nothing by that.
+    static uint32_t batchFor(const Device& device, uint32_t pixel_count);
     /// Samples a pixel that one record() may take side by side.
     uint32_t maxBatch() const { return max_batch_; }
     uint32_t sampleCount() const { return resolve_.sampleCount(); }

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <map>
 #include <numeric>
 
 namespace
@@ -18,10 +19,10 @@ class Sequence
 {
 public:
     /// @param frame_count that render() will be given
-    Sequence(const PlayerOptions& options, const OpenedScene& opened, const FrameFiles& files, size_t frame_count,
-             const SequenceParts& parts, Statistics& statistics)
+    Sequence(const PlayerOptions& options, const OpenedScene& opened, const PictureOrigin& origin,
+             const FrameFiles& files, size_t frame_count, const SequenceParts& parts, Statistics& statistics)
         : options_(options), opened_(opened), files_(files), frame_count_(frame_count), parts_(parts),
-          statistics_(statistics), rec_(*opened.device)
+          statistics_(statistics), rec_(*opened.device), notes_(originNotes(origin))
     {
     }
 
@@ -44,6 +45,7 @@ private:
     SequenceParts parts_;
     Statistics& statistics_;
     Recorder rec_;
+    std::vector<PictureNote> notes_; // for every frame's header
     std::optional<Renderer> renderer_;
 };
 
@@ -74,10 +76,11 @@ Status Sequence::write(uint32_t frame)
 {
     const std::filesystem::path path = files_.of(frame);
     if (const Status status =
-            capture(path, *renderer_, *opened_.device, *opened_.scene, opened_.settings, options_.layers);
+            capture(path, *renderer_, *opened_.device, *opened_.scene, opened_.settings, options_.layers, notes_);
         !status)
         return status.error().about(path.string());
     fmt::print(stderr, "{} ({} of {})\n", path.string(), ++written_, frame_count_);
+    statistics_.frames_written = uint32_t(written_);
     return Success{};
 }
 
@@ -90,12 +93,17 @@ Status Sequence::renderPart(std::span<const uint32_t> frames)
     const int64_t warm_up = options_.mode == Mode::kGi ? parts_.warm_up : 0; // other modes remember nothing
     for (int64_t frame = part - warm_up; frame <= frames.back(); ++frame)
     {
+        const double start = statistics_.elapsedMs();
         if (const Status status = renderSamples(frame, 1); !status)
             return status;
         if (frame != frames.front())
+        {
+            statistics_.thrown_away_ms += statistics_.elapsedMs() - start;
             continue;
+        }
         if (const Status status = write(frames.front()); !status)
             return status;
+        statistics_.frames_ms += statistics_.elapsedMs() - start;
         if (frames = frames.subspan(1); frames.empty())
             break;
     }
@@ -107,9 +115,12 @@ Status Sequence::renderStanding(uint32_t frame)
 {
     if (const Status status = begin(); !status)
         return status;
+    const double start = statistics_.elapsedMs();
     if (const Status status = renderSamples(frame, options_.sample_count); !status)
         return status;
-    return write(frame);
+    const Status status = write(frame);
+    statistics_.frames_ms += statistics_.elapsedMs() - start;
+    return status;
 }
 
 Status Sequence::render(std::span<const uint32_t> frames)
@@ -131,18 +142,65 @@ Status Sequence::writeResults()
 {
     if (!renderer_)
         return Success{};
+    fmt::print(stderr,
+               "{} of {} frames written in {:.2f} s: {:.2f} s for them, {:.2f} s for frames that are not kept\n",
+               written_, frame_count_, 1e-3 * statistics_.elapsedMs(), 1e-3 * statistics_.frames_ms,
+               1e-3 * statistics_.thrown_away_ms);
     PlayerOptions rest = options_;
     rest.output.clear(); // the frames are there
     return ::writeResults(rest, opened_, *renderer_, opened_.settings, statistics_);
 }
 
-Result<std::vector<uint32_t>> framesToRender(const PlayerOptions& options, const FrameFiles& files)
+/// What is on the disk of a sequence, and what is to be done.
+struct Request
 {
-    if (!options.force)
-        return files.missing(*options.sequence, options.width, options.height);
-    std::vector<uint32_t> all(options.sequence->count());
-    std::iota(all.begin(), all.end(), options.sequence->first);
-    return all;
+    std::vector<uint32_t> whole;  // frames that are there and stay
+    std::vector<uint32_t> frames; // to render
+};
+
+Result<Request> requestOf(const PlayerOptions& options, const FrameFiles& files)
+{
+    Request request;
+    if (options.force)
+    {
+        request.frames.resize(options.sequence->count());
+        std::iota(request.frames.begin(), request.frames.end(), options.sequence->first);
+        return request;
+    }
+    auto there = files.look(*options.sequence, options.width, options.height);
+    if (!there)
+        return there.error();
+    request.whole = std::move(there->whole);
+    request.frames = std::move(there->missing);
+    return request;
+}
+
+/// Frames that stay must be those that this run would render: all of one of `origins`.
+/// @return kInvalid naming one that is not
+Status checkOrigins(const FrameFiles& files, std::span<const uint32_t> frames, std::vector<PictureOrigin> origins)
+{
+    std::map<std::string, size_t> devices;
+    for (const uint32_t frame : frames)
+    {
+        const std::filesystem::path path = files.of(frame);
+        const auto origin = readOrigin(path);
+        if (!origin)
+            return origin.error().about(path.string());
+        const std::string differing = difference(*origin, origins.front());
+        std::erase_if(origins, [&](const PictureOrigin& wanted) { return !difference(*origin, wanted).empty(); });
+        if (origins.empty())
+            return Error{
+                ExitCode::kInvalid,
+                fmt::format("is there already and was rendered {}; a film of both would be mixed. Choose another "
+                            "folder, or give --force to render all of them again",
+                            differing),
+                path.string()};
+        ++devices[origin->device];
+    }
+    if (devices.size() > 1)
+        for (const auto& [device, count] : devices)
+            fmt::print(stderr, "warning: {} frames were rendered by {}: another device, other noise\n", count, device);
+    return Success{};
 }
 
 Status leaveAlone(const PlayerOptions& options, const Statistics& statistics)
@@ -158,7 +216,10 @@ Status leaveAlone(const PlayerOptions& options, const Statistics& statistics)
 Status renderFrames(const PlayerOptions& options, const OpenedScene& opened, const FrameFiles& files,
                     std::span<const uint32_t> frames, Statistics& statistics, const SequenceParts& parts)
 {
-    Sequence sequence(options, opened, files, frames.size(), parts, statistics);
+    const auto origin = originOf(opened, options);
+    if (!origin)
+        return origin.error();
+    Sequence sequence(options, opened, *origin, files, frames.size(), parts, statistics);
     const Status rendered = sequence.render(frames);
     const Status written = sequence.writeResults();
     return rendered ? written : rendered;
@@ -169,19 +230,27 @@ Status playSequence(const PlayerOptions& options)
     const auto files = FrameFiles::parse(options.output);
     if (!files)
         return files.error();
-    const auto frames = framesToRender(options, *files);
-    if (!frames)
-        return frames.error();
+    noteInterruptions(); // shares may be slow
+    const auto request = requestOf(options, *files);
+    if (!request)
+        return request.error();
+    if (!request->whole.empty())
+    {
+        const auto origins = possibleOrigins(options);
+        if (!origins)
+            return origins.error();
+        if (const Status status = checkOrigins(*files, request->whole, *origins); !status)
+            return status;
+    }
     if (options.list_missing)
     {
-        for (const uint32_t frame : *frames)
+        for (const uint32_t frame : request->frames)
             fmt::print("{}\n", frame);
         return Success{};
     }
     Statistics statistics;
-    if (frames->empty())
+    if (request->frames.empty())
         return leaveAlone(options, statistics);
-    noteInterruptions();
     const auto opened = openScene(options, {}, statistics);
     if (!opened)
         return opened.error();
@@ -189,5 +258,13 @@ Status playSequence(const PlayerOptions& options)
         return Error{ExitCode::kUsage,
                      "nothing in the package moves, so a range of --frames needs a camera path: --path "
                      "FILE, or a count of frames"};
-    return renderFrames(options, *opened, *files, *frames, statistics);
+    const auto origin = originOf(*opened, options);
+    if (!origin)
+        return origin.error();
+    // By now the device has chosen the preset.
+    if (const Status status =
+            checkOrigins(*files, std::span(request->whole).first(request->whole.empty() ? 0 : 1), {*origin});
+        !status)
+        return status;
+    return renderFrames(options, *opened, *files, request->frames, statistics);
 }

@@ -75,9 +75,12 @@ Status Statistics::writeJson(const std::filesystem::path& path) const
         "  \"package_ms\": {:.3f},\n  \"device_ms\": {:.3f},\n  \"upload_ms\": {:.3f},\n  \"ready_ms\": {:.3f},\n"
         "  \"first_submit_ms\": {:.3f},\n  \"pipeline_ms\": {:.3f},\n  \"device_bytes\": {},\n"
         "  \"samples_per_pixel\": {},\n  \"non_finite_samples\": {},\n  \"photons\": {},\n"
-        "  \"photon_paths\": {},\n  \"photon_paths_asked\": {},\n  \"submissions\": {},\n  \"stages\": [",
+        "  \"photon_paths\": {},\n  \"photon_paths_asked\": {},\n  \"submissions\": {},\n"
+        "  \"frames_written\": {},\n  \"frames_ms\": {:.3f},\n  \"thrown_away_ms\": {:.3f},\n  \"elapsed_ms\": "
+        "{:.3f},\n  \"stages\": [",
         jsonString(device), open_ms, package_ms, device_ms, upload_ms, ready_ms, first_submit_ms, pipeline_ms,
-        device_bytes, sample_count, non_finite_samples, photons, photon_paths, photon_paths_asked, frames.size());
+        device_bytes, sample_count, non_finite_samples, photons, photon_paths, photon_paths_asked, frames.size(),
+        frames_written, frames_ms, thrown_away_ms, elapsedMs());
     const auto stages = summarise(frames);
     for (size_t i = 0; i < stages.size(); ++i)
         text += fmt::format("{}\n    {{\"name\": {}, \"p50_ms\": {:.4f}, \"p95_ms\": {:.4f}}}", i ? "," : "",

@@ -66,7 +66,7 @@ Result<std::unique_ptr<Device>> Device::create(const Instance& instance, uint32_
     };
     if (const VkResult result = vkCreateDevice(device->physical_, &info, nullptr, &device->device_);
         result != VK_SUCCESS)
-        return Error{ExitCode::kDevice,
+        return Error{isDeviceFailure(result) ? kTryAgain : ExitCode::kDevice,
                      fmt::format("{} cannot be opened ({})", device->name(), vulkanResultName(result))};
     vkGetDeviceQueue(device->device_, device->queue_family_, 0, &device->queue_);
     device->set_name_ =

@@ -70,7 +70,8 @@ Buffer Device::buffer(std::string_view name, uint64_t bytes, Placement placement
     }
     else
         buffer.memory_ = allocated(needs.size);
-    check(buffer.memory_ != nullptr, "out of device memory: buffer '{}' of {} bytes", name, bytes);
+    if (!buffer.memory_)
+        endForAnotherTry(fmt::format("out of device memory, buffer '{}' of {} bytes", name, bytes));
     vulkanCheck(vkBindBufferMemory(device_, buffer.buffer_, buffer.memory_->handle(), buffer.offset_));
     if (!buffer.memory_->mapped_.empty())
         buffer.mapped_ = buffer.memory_->mapped_.subspan(buffer.offset_, bytes);

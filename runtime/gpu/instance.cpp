@@ -1,5 +1,7 @@
 #include "runtime/gpu/instance.h"
 
+#include "format/temporary_file.h"
+
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -34,6 +36,19 @@ const char* vulkanResultName(VkResult result)
     default:
         return "another Vulkan error";
     }
+}
+
+bool isDeviceFailure(VkResult result)
+{
+    return result == VK_ERROR_DEVICE_LOST || result == VK_ERROR_OUT_OF_DEVICE_MEMORY ||
+           result == VK_ERROR_OUT_OF_HOST_MEMORY;
+}
+
+void endForAnotherTry(const std::string& what)
+{
+    fmt::print(stderr, "the device: error: {}; another try may succeed\n", what);
+    removeOpenTemporaryFiles();
+    std::_Exit(int(kTryAgain));
 }
 
 namespace

@@ -140,7 +140,8 @@ Image Device::uploadImage(std::string_view name, const ImageShape& shape, std::s
     VkMemoryRequirements needs;
     vkGetImageMemoryRequirements(device_, image.image_, &needs);
     image.memory_ = allocate(needs, Placement::kDevice);
-    check(image.memory_ != nullptr, "out of device memory: image '{}' of {} bytes", name, needs.size);
+    if (!image.memory_)
+        endForAnotherTry(fmt::format("out of device memory, image '{}' of {} bytes", name, needs.size));
     vulkanCheck(vkBindImageMemory(device_, image.image_, image.memory_->handle(), 0));
     nameObject(VK_OBJECT_TYPE_IMAGE, uint64_t(image.image_), name);
 

@@ -1,5 +1,6 @@
 // Pictures that the player writes: layers of OpenEXR files, and whether what lies on the disk is whole.
 #include "image/picture_file.h"
+#include "image/png_chunks.h"
 #include "image/read_exr.h"
 #include "image/write_image.h"
 #include "tests/tools/temporary_folder.h"
@@ -9,6 +10,7 @@
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfInputFile.h>
 #include <gtest/gtest.h>
+#include <zlib.h>
 
 #include <cmath>
 
@@ -85,6 +87,49 @@ TEST(ExrLayers, ThePictureIsReadAsBeforeAndTheirOrderDoesNotShow)
     const auto read = readExr(folder / "a.exr");
     ASSERT_TRUE(read) << read.error().message;
     EXPECT_EQ(read->rgb, beauty);
+}
+
+const std::vector<PictureNote> kNotes{{"lumicut.package", "0123"}, {"lumicut.settings", "seed 1\nfps 24\n"}};
+
+TEST(PictureNotes, AreReadAsWrittenAndLeaveThePictureAsItIs)
+{
+    const TemporaryFolder folder;
+    const std::vector<uint8_t> grey(3 * kWidth * kHeight, 77);
+    for (const std::vector<PictureNote>& notes : {kNotes, std::vector<PictureNote>()})
+    {
+        ASSERT_TRUE(writeExr(folder / "a.exr", {kWidth, kHeight, numbers(3, 1)}, notes));
+        ASSERT_TRUE(writePng(folder / "a.png", kWidth, kHeight, 3, grey, notes));
+        for (const char* name : {"a.exr", "a.png"})
+        {
+            EXPECT_EQ(pictureState(folder / name, kWidth, kHeight), PictureState::kWhole) << name;
+            const auto read = readPictureNotes(folder / name);
+            ASSERT_TRUE(read) << read.error().message;
+            EXPECT_EQ(*read, notes) << name;
+        }
+        EXPECT_EQ(channel(folder / "a.exr", "G")[0], numbers(3, 1)[1]);
+    }
+    std::ofstream(folder / "text.exr") << "notes on frame 3";
+    const auto other = readPictureNotes(folder / "text.exr");
+    ASSERT_FALSE(other);
+    EXPECT_EQ(other.error().code, ExitCode::kInvalid);
+}
+
+/// Chunks that a strict reader refuses would make the picture useless.
+TEST(PictureNotes, HaveTheChecksumsOfPng)
+{
+    const std::vector<uint8_t> bytes = encodePng(4, 4, 3, std::vector<uint8_t>(3 * 16), kNotes);
+    size_t texts = 0;
+    const std::span<const std::byte> file = std::as_bytes(std::span(bytes));
+    forEachPngChunk(file,
+                    [&](uint32_t type, std::span<const std::byte> data)
+                    {
+                        texts += type == kPngText;
+                        const auto* checked = reinterpret_cast<const Bytef*>(data.data()) - 4; // with the type
+                        const auto at = size_t(data.data() - file.data()) + data.size();
+                        EXPECT_EQ(bigEndian(file, at), crc32(0, checked, uInt(data.size() + 4)));
+                        return true;
+                    });
+    EXPECT_EQ(texts, kNotes.size());
 }
 
 /// `name` holds the first `bytes` of `whole`.

@@ -74,6 +74,14 @@ protected:
         return fileBytes(folder_ / name);
     }
 
+    /// Without what the file says of them.
+    std::vector<float> pixels(const std::string& name) const
+    {
+        const auto image = readExr(folder_ / name);
+        EXPECT_TRUE(image) << name;
+        return image ? image->rgb : std::vector<float>();
+    }
+
     std::set<std::string> files() const
     {
         std::set<std::string> names;
@@ -248,7 +256,9 @@ TEST_F(Player, ShowsTheErrorAgainstARenderingOfTheSameSize)
 {
     const std::string against = "--view error --against " + path("reference.exr");
     render("reference.exr", "--mode reference --spp 8");
-    EXPECT_NE(render("error.png", against), render("picture.png", ""));
+    render("error.exr", against);
+    render("picture.exr", "");
+    EXPECT_NE(pixels("error.exr"), pixels("picture.exr"));
     expectPlayRefused(path("scene.lumi") + " " + against + " --size 16x24 --output " + path("out.exr"), 3, "one size");
 }
 
@@ -259,7 +269,8 @@ TEST_F(Player, RendersTheSameBytesForTheSameSeedAndOthersForAnother)
         const std::string arguments = "--spp 3 --mode " + mode;
         const std::string picture = render("a.exr", arguments + " --seed 7");
         EXPECT_EQ(picture, render("b.exr", arguments + " --seed 7")) << mode;
-        EXPECT_NE(picture, render("c.exr", arguments + " --seed 8")) << mode;
+        render("c.exr", arguments + " --seed 8");
+        EXPECT_NE(pixels("a.exr"), pixels("c.exr")) << mode;
     }
 }
 

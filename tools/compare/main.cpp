@@ -2,6 +2,7 @@
 #include "image/write_image.h"
 #include "tools/cli/documentation.h"
 #include "tools/compare/flip.h"
+#include "tools/compare/merge_command.h"
 #include "tools/compare/metrics.h"
 #include "tools/compare/picture.h"
 #include "tools/compare/read_images.h"
@@ -152,12 +153,16 @@ int main(int argc, char** argv)
         ->delimiter(',')
         ->expected(4);
     addWelchOptions(app, options.welch);
+    int merged = int(ExitCode::kOk);
+    addMergeCommand(app, merged);
     app.add_flag("--json", options.json, "print the result as JSON");
     app.add_flag("--tsv", options.tsv, "print one line of tab-separated figures (see tools/compare/README.md)")
         ->excludes("--json");
     try
     {
         app.parse(argc, argv);
+        if (app.got_subcommand("merge"))
+            return merged;
         if (!options.welch.asked() && (options.reference.empty() || options.test.empty()))
             throw CLI::RequiredError("REFERENCE and TEST, or --welch and --against,");
     }
