@@ -114,18 +114,12 @@ GlobalIllumination::GlobalIllumination(const Device& device, const SceneGpu& sce
       samples_(device, width, height, settings.sample_count),
       gather_(device, scene, settings.sample_count, settings.gather_rays, mostGatherRays(settings), scratch_.stage()),
       interpolate_(device, settings.sample_count), glossy_(device, scene, point_count_, scratch_.stage()),
-      caustics_(device, scene), compose_(device, width * height, signals_scratch_),
-      views_(device, scene, width * height)
+      caustics_(device, scene),
+      filter_(device, scene, settings, width, height, direct_.isNoisy() || has_specular_, signals_scratch_),
+      compose_(device, width * height, signals_scratch_), views_(device, scene, width * height)
 {
     if (GuideStage::helps(scene))
         guide_.emplace(device, scene, settings.photon_count);
-    const bool filters = settings.denoise_passes > 0 && (direct_.isNoisy() || has_specular_);
-    if (filters || settings.history_frames > 0 || settings.antialias_frames > 0)
-        signals_.emplace(device, scene, width * height, signals_scratch_);
-    if (settings.history_frames > 0)
-        history_.emplace(device, width * height, signals_scratch_);
-    if (filters)
-        denoise_.emplace(device, width * height, signals_scratch_);
 }
 
 FrameTraits GlobalIllumination::traits() const
@@ -176,49 +170,13 @@ const Buffer& GlobalIllumination::record(Recorder& rec, const RayStage& rays, co
     }
     if (plan.caustics)
         recordCaustics(c);
-    if (plan.denoise_passes > 0 || plan.remembers || plan.antialiases)
-        recordSignals(c);
+    filter_.record(rec, frame, surface, light_, plan, settings);
     const Buffer& picture = compose_.record(rec, light_, plan, width_ * height_, point_count_);
     if (layers_)
         layers_->record(rec, frame, surface, light_, plan.lightTerms());
     if (settings.view != gpu::kViewNone)
         recordView(c, picture);
     return picture;
-}
-
-/// What is noisy becomes the mean of the frames before, as far as they saw it, and of its surroundings.
-void GlobalIllumination::recordSignals(const Context& c)
-{
-    const SignalBuffers signals = signals_->record(c.rec, c.frame, c.surface, light_, c.plan.lightTerms());
-    if (c.plan.remembers)
-        history_->record(c.rec, {.signals = signals,
-                                 .surface = c.surface,
-                                 .light = light_,
-                                 .frame = c.frame,
-                                 .most_frames = c.settings.history_frames});
-    const auto filter = [&](const Buffer& signal, const Buffer& light)
-    {
-        const Buffer& filtered =
-            c.plan.denoise_passes > 0
-                ? denoise_->record(c.rec, {.signal = signal,
-                                           .guides = signals.guides,
-                                           .width = width_,
-                                           .height = height_,
-                                           .passes = c.plan.denoise_passes,
-                                           .pixel_angle = c.frame.camera.orthographic ? 0 : pixelSide(c.frame.camera)})
-                : signal;
-        if (c.plan.remembers || c.plan.denoise_passes > 0)
-            signals_->apply(c.rec, signal, filtered, light, width_ * height_);
-    };
-    if (c.plan.noisy_direct)
-        filter(signals.direct, light_.direct);
-    if (c.plan.glossy)
-        filter(signals.glossy, light_.glossy);
-}
-
-std::optional<double> GlobalIllumination::rememberedShare(const Device& device) const
-{
-    return history_ ? std::optional(history_->rememberedShare(device, width_ * height_)) : std::nullopt;
 }
 
 void GlobalIllumination::recordDirect(const Context& c) const

@@ -3,14 +3,13 @@
 #pragma once
 #include "runtime/frame/light_buffers.h"
 #include "runtime/frame/plan.h"
+#include "runtime/light_filter.h"
 #include "runtime/stages/caustics.h"
 #include "runtime/stages/compose.h"
-#include "runtime/stages/denoise.h"
 #include "runtime/stages/direct.h"
 #include "runtime/stages/gather.h"
 #include "runtime/stages/glossy.h"
 #include "runtime/stages/guide.h"
-#include "runtime/stages/history.h"
 #include "runtime/stages/interpolate.h"
 #include "runtime/stages/layers.h"
 #include "runtime/stages/primary.h"
@@ -41,13 +40,13 @@ public:
         return global_map_ ? device.download<gpu::PhotonStore>(photons_.store(), 1)[0] : gpu::PhotonStore{};
     }
     /// gpu::Motion[width * height] of the last frame whose plan antialiases.
-    const Buffer& motions() const { return signals_->motions(); }
+    const Buffer& motions() const { return filter_.motions(); }
     /// From now on record() keeps the layers of its pictures, but of views.
     void keepLayers(const Device& device) { layers_.emplace(device, scene_, width_ * height_); }
     /// gpu::LayerSums[width * height] over the frames of the picture so far.
     const Buffer& layerSums() const { return layers_->sums(); }
     /// Share of the pixels that went on from a history in the last frame, none where it kept none; waits for the device.
-    std::optional<double> rememberedShare(const Device& device) const;
+    std::optional<double> rememberedShare(const Device& device) const { return filter_.rememberedShare(device); }
     /// Of the last frame; waits for the device.
     std::vector<gpu::Sample> irradianceSamples(const Device& device) const { return samples_.download(device); }
     uint32_t cutNodeCount(const Device& device) const { return cut_.nodeCount(device); }
@@ -73,7 +72,6 @@ private:
     void recordIndirect(const Context& c, const InterpolateStage::Sorted& samples) const;
     void recordGlossy(const Context& c, const CutStage::Output& cut, const InterpolateStage::Sorted* samples) const;
     void recordCaustics(const Context& c);
-    void recordSignals(const Context& c);
     void recordView(const Context& c, const Buffer& picture) const;
 
     struct MapOrigin // what a photon map was made from
@@ -106,9 +104,7 @@ private:
     InterpolateStage interpolate_;
     GlossyStage glossy_;
     CausticsStage caustics_;
-    std::optional<SignalsStage> signals_; // where filters or histories are asked for
-    std::optional<HistoryStage> history_;
-    std::optional<DenoiseStage> denoise_;
+    LightFilter filter_;
     ComposeStage compose_;
     std::optional<LayersStage> layers_; // where they are asked for
     ViewsStage views_;

@@ -16,6 +16,14 @@ gpu::vec2 jitterOf(uint32_t frame)
     return {part(0.7548776662466927), part(0.5698402909980532)};
 }
 
+/// Frames in the mean that smooths edges. Where pixels' light changes each by itself, nothing tells the mean of it.
+uint32_t mostAntialiased(const FrameInfo& frame, const Settings& settings)
+{
+    constexpr uint32_t kMostWhereLightChanges = 2;
+    const bool unknown = frame.light_range && !frame.light_range->isOneFactor();
+    return unknown ? std::min(settings.antialias_frames, kMostWhereLightChanges) : settings.antialias_frames;
+}
+
 bool onlyLightsChanged(const SceneVersion& a, const SceneVersion& b)
 {
     return a.geometry == b.geometry && a.materials == b.materials;
@@ -51,22 +59,23 @@ Renderer::Renderer(const Device& device, const SceneGpu& scene, Mode mode, uint3
       max_batch_(mode == Mode::kReference ? batchFor(device, width * height) : 1), rays_(device, scene),
       resolve_(device, width * height), last_scene_(scene.version())
 {
-    if (mode == Mode::kGi)
-        last_emitters_ = scene.emitters();
     if (mode == Mode::kReference)
         reference_.emplace(device, scene, width * height, max_batch_);
     else if (mode == Mode::kGi)
-    {
         gi_.emplace(device, scene, settings, width, height);
-        if (settings.antialias_frames > 0)
-            antialias_.emplace(device, width * height);
-    }
+    else if (mode == Mode::kFilteredPaths)
+        paths_.emplace(device, scene, settings, width, height);
     else
     {
         primary_.emplace(device, scene, width * height);
         direct_.emplace(device, scene, width, height, 1);
         direct_light_ = device.array<gpu::vec3>("renderer.direct_light", width * height);
     }
+    if (!remembers())
+        return;
+    last_emitters_ = scene.emitters();
+    if (settings.antialias_frames > 0)
+        antialias_.emplace(device, width * height);
 }
 
 /// What this frame continues: a static view if neither camera nor lights have changed, else the last frame only, as far as its
@@ -75,7 +84,7 @@ FrameInfo Renderer::beginFrame(Recorder& rec, const Camera& camera, const Settin
 {
     FrameInfo frame{.camera = cameraParams(camera, width_, height_), .map_seed = seed, .number = frame_count_++};
     frame.camera.seed = seed;
-    const bool goes_on = gi_ && goesOn(settings);
+    const bool goes_on = remembers() && goesOn(settings);
     const bool scene_stands = last_scene_ == scene_.version();
     if (!last_camera_ || !scene_stands || !sameView(*last_camera_, frame.camera))
     {
@@ -97,7 +106,7 @@ FrameInfo Renderer::beginFrame(Recorder& rec, const Camera& camera, const Settin
         frame.map_seed = picture_seed_;
     if (frame.previous && antialias_)
         frame.camera.jitter = jitterOf(frame.number);
-    if (gi_ && !scene_stands)
+    if (remembers() && !scene_stands)
         last_emitters_ = scene_.emitters();
     last_scene_ = scene_.version();
     const bool repeat = gi_ && showsOneFrame(settings.view); // a debug view stands still
@@ -116,8 +125,8 @@ void Renderer::record(Recorder& rec, const Camera& camera, const Settings& setti
     if (settings.view == gpu::kViewError) // lies over the picture
         drawn.view = gpu::kViewNone;
     FrameInfo frame = beginFrame(rec, camera, drawn, seed);
-    if (gi_)
-        return recordGi(rec, frame, drawn);
+    if (remembers())
+        return recordRemembering(rec, frame, drawn);
     if (!reference_)
         return recordDirect(rec, frame, settings);
     frame.camera.sample_count = sample_count;
@@ -142,16 +151,17 @@ void Renderer::recordDirect(Recorder& rec, const FrameInfo& frame, const Setting
     resolve_.accumulate(rec, direct_light_, width_ * height_, 1);
 }
 
-void Renderer::recordGi(Recorder& rec, const FrameInfo& frame, const Settings& settings)
+void Renderer::recordRemembering(Recorder& rec, const FrameInfo& frame, const Settings& settings)
 {
-    const Buffer& picture = gi_->record(rec, rays_, frame, settings);
+    const Buffer& picture =
+        gi_ ? gi_->record(rec, rays_, frame, settings) : paths_->record(rec, rays_, frame, settings);
     resolve_.accumulate(rec, picture, width_ * height_, 1);
     is_antialiased_ = antialias_ && settings.view == gpu::kViewNone && settings.antialias_frames > 0;
     if (is_antialiased_ && frame.stands())
         antialias_->recordStanding(rec, resolve_.sum(), resolve_.sampleCount(), width_ * height_);
     else if (is_antialiased_)
-        antialias_->recordMoving(rec, picture, gi_->motions(), width_, height_, settings.antialias_frames,
-                                 frame.previous.has_value(),
+        antialias_->recordMoving(rec, picture, gi_ ? gi_->motions() : paths_->motions(), width_, height_,
+                                 mostAntialiased(frame, settings), frame.previous.has_value(),
                                  frame.light_range ? frame.light_range->surely() : gpu::vec3{1, 1, 1});
     if (shows_error_)
         error_->record(rec, resolve_.sum(), resolve_.sampleCount(), width_, height_);

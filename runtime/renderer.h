@@ -1,6 +1,7 @@
 // The frame: which stages run, in which order, and what they hand to each other.
 #pragma once
 #include "runtime/camera.h"
+#include "runtime/filtered_paths.h"
 #include "runtime/global_illumination.h"
 #include "runtime/settings.h"
 #include "runtime/stages/antialias.h"
@@ -15,9 +16,10 @@
 
 enum class Mode
 {
-    kDirect,    // emission, direct light, mirrors and glass
-    kReference, // everything, by path tracing
-    kGi,        // everything, by photons and irradiance samples
+    kDirect,        // emission, direct light, mirrors and glass
+    kReference,     // everything, by path tracing
+    kGi,            // everything, by photons and irradiance samples
+    kFilteredPaths, // everything, by path tracing with the histories, filter and anti-aliasing of kGi: to compare with
 };
 
 class Renderer
@@ -71,10 +73,10 @@ public:
     std::vector<gpu::Sample> irradianceSamples(const Device& device) const { return gi_->irradianceSamples(device); }
     /// Nodes of the last frame's illumination cut in Mode::kGi, but for cut.mode knn; waits for the device.
     uint32_t cutNodeCount(const Device& device) const { return gi_->cutNodeCount(device); }
-    /// Share of the pixels that went on from a history in the last frame in Mode::kGi; none where histories are off.
+    /// Share of the pixels that went on from a history in the last frame; none where there are no histories.
     std::optional<double> rememberedShare(const Device& device) const
     {
-        return gi_ ? gi_->rememberedShare(device) : std::nullopt;
+        return gi_ ? gi_->rememberedShare(device) : paths_ ? paths_->rememberedShare(device) : std::nullopt;
     }
     /// In Mode::kGi: from now on shading points and irradiance samples are those of that seed, whatever the frame's.
     void placeSamplesBy(uint32_t seed) { gi_->placeSamplesBy(seed); }
@@ -84,7 +86,11 @@ public:
 private:
     FrameInfo beginFrame(Recorder& rec, const Camera& camera, const Settings& settings, uint32_t seed);
     void recordDirect(Recorder& rec, const FrameInfo& frame, const Settings& settings);
-    void recordGi(Recorder& rec, const FrameInfo& frame, const Settings& settings);
+    bool remembers() const
+    {
+        return gi_.has_value() || paths_.has_value();
+    } // modes whose frames may go on from the last one
+    void recordRemembering(Recorder& rec, const FrameInfo& frame, const Settings& settings);
 
     const SceneGpu& scene_;
     uint32_t width_, height_, max_batch_;
@@ -94,14 +100,15 @@ private:
     Buffer direct_light_; // vec3[pixels], of Mode::kDirect
     std::optional<ReferenceStage> reference_;
     std::optional<GlobalIllumination> gi_;
-    std::optional<AntialiasStage> antialias_; // in Mode::kGi, where it is asked for
+    std::optional<FilteredPaths> paths_;
+    std::optional<AntialiasStage> antialias_; // where frames remember, and it is asked for
     bool is_antialiased_ = false;             // the last frame
     ResolveStage resolve_;
     std::optional<ErrorView> error_;
     bool shows_error_ = false;                     // in the last frame
     std::optional<gpu::CameraParams> last_camera_; // none: the next picture starts anew
     SceneVersion last_scene_;
-    Emitters last_emitters_; // in Mode::kGi
+    Emitters last_emitters_; // where frames remember
     uint32_t frame_count_ = 0;
     uint32_t picture_seed_ = 0; // of all frames of a static view
     bool went_on_ = false;      // the last frame left histories

@@ -59,6 +59,11 @@ gpu::vec3 LightRange::surely() const
     return factor;
 }
 
+bool LightRange::isOneFactor() const
+{
+    return std::ranges::all_of(kChannels, [&](auto channel) { return least.*channel == most.*channel; });
+}
+
 bool LightRange::operator==(const LightRange& other) const
 {
     return std::ranges::all_of(

@@ -15,6 +15,8 @@ struct LightRange
     static LightRange anything();
     /// The factor within that is nearest to 1: so much change is sure.
     gpu::vec3 surely() const;
+    /// All pixels' light has changed alike, so that surely() is exact.
+    bool isOneFactor() const;
     bool operator==(const LightRange& other) const;
 };
 

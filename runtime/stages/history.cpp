@@ -5,12 +5,23 @@
 
 #include <cmath>
 
-HistoryStage::HistoryStage(const Device& device, uint32_t max_pixels, const Scratch& scratch)
-    : compare_(device.kernel("history/compare")), blend_(device.kernel("history/blend")),
-      blend_changed_(device.kernel("history/blend", {{"kLightChanged", 1}})),
-      compared_(device.texelArray<gpu::PixelPairs>("history.compared", max_pixels, scratch)),
-      pixels_{device.texelArray<gpu::PixelHistory>("history.pixels_a", max_pixels),
-              device.texelArray<gpu::PixelHistory>("history.pixels_b", max_pixels)}
+namespace
+{
+uint32_t tileCount(uint32_t width, uint32_t height)
+{
+    constexpr uint32_t kSide = gpu::kHistoryTileSide;
+    static_assert(kSide * kSide == gpu::kHistoryTileSize);
+    return ((width + kSide - 1) / kSide) * ((height + kSide - 1) / kSide);
+}
+} // namespace
+
+HistoryStage::HistoryStage(const Device& device, uint32_t width, uint32_t height, const Scratch& scratch)
+    : tile_count_(tileCount(width, height)), compare_(device.kernel("history/compare")),
+      reconcile_(device.kernel("history/reconcile")), blend_(device.kernel("history/blend")),
+      compared_(device.texelArray<gpu::PixelPairs>("history.compared", width * height, scratch)),
+      tiles_(device.array<gpu::TilePairs>("history.tiles", tile_count_, scratch)),
+      pixels_{device.texelArray<gpu::PixelHistory>("history.pixels_a", width * height),
+              device.texelArray<gpu::PixelHistory>("history.pixels_b", width * height)}
 {
 }
 
@@ -30,21 +41,35 @@ void HistoryStage::record(Recorder& rec, const Input& in)
                                     .moves = in.signals.moves,
                                     .least = range.least,
                                     .most = range.most};
-    const bool changed = in.frame.light_range.has_value();
-    if (changed)
-        rec.run(compare_, params.point_count, params,
-                {{"Motions", in.signals.motions},
-                 {"Guides", in.signals.guides},
-                 {"OldGuides", in.signals.last_guides},
-                 {"OldHistory", pixels_[1 - now_]},
-                 {"DirectSignals", in.signals.direct},
-                 {"GlossySignals", in.signals.glossy},
-                 {"DiffusePoints", in.surface.diffuse_points},
-                 {"Indirect", in.light.indirect},
-                 {"Caustics", in.light.caustics},
-                 {"Compared", compared_},
-                 {"Displacements", in.signals.displacements}});
-    rec.run(changed ? blend_changed_ : blend_, params.point_count, params,
+    check(tileCount(camera.width, camera.height) <= tile_count_, "{} x {}", camera.width, camera.height);
+    if (!in.frame.light_range)
+        return rec.run(blend_, params.point_count, params,
+                       {{"Motions", in.signals.motions},
+                        {"Guides", in.signals.guides},
+                        {"OldGuides", in.signals.last_guides},
+                        {"OldHistory", pixels_[1 - now_]},
+                        {"NewHistory", pixels_[now_]},
+                        {"DirectSignals", in.signals.direct},
+                        {"GlossySignals", in.signals.glossy},
+                        {"DiffusePoints", in.surface.diffuse_points},
+                        {"Indirect", in.light.indirect},
+                        {"Caustics", in.light.caustics},
+                        {"Displacements", in.signals.displacements}});
+    const uint32_t thread_count = tileCount(camera.width, camera.height) * gpu::kHistoryTileSize;
+    rec.run(compare_, thread_count, params,
+            {{"Motions", in.signals.motions},
+             {"Guides", in.signals.guides},
+             {"OldGuides", in.signals.last_guides},
+             {"OldHistory", pixels_[1 - now_]},
+             {"DirectSignals", in.signals.direct},
+             {"GlossySignals", in.signals.glossy},
+             {"DiffusePoints", in.surface.diffuse_points},
+             {"Indirect", in.light.indirect},
+             {"Caustics", in.light.caustics},
+             {"Compared", compared_},
+             {"Displacements", in.signals.displacements},
+             {"Tiles", tiles_}});
+    rec.run(reconcile_, thread_count, params,
             {{"Motions", in.signals.motions},
              {"Guides", in.signals.guides},
              {"OldGuides", in.signals.last_guides},
@@ -55,8 +80,9 @@ void HistoryStage::record(Recorder& rec, const Input& in)
              {"DiffusePoints", in.surface.diffuse_points},
              {"Indirect", in.light.indirect},
              {"Caustics", in.light.caustics},
+             {"Displacements", in.signals.displacements},
              {"Compared", compared_},
-             {"Displacements", in.signals.displacements}});
+             {"Tiles", tiles_}});
 }
 
 double HistoryStage::rememberedShare(const Device& device, uint32_t point_count) const

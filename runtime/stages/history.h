@@ -6,7 +6,7 @@
 class HistoryStage
 {
 public:
-    HistoryStage(const Device& device, uint32_t max_pixels, const Scratch& scratch = {});
+    HistoryStage(const Device& device, uint32_t width, uint32_t height, const Scratch& scratch = {});
 
     struct Input
     {
@@ -22,8 +22,10 @@ public:
     double rememberedShare(const Device& device, uint32_t point_count) const;
 
 private:
-    Kernel compare_, blend_, blend_changed_;
-    Buffer compared_;              // gpu::PixelPairs[max_pixels]
-    std::array<Buffer, 2> pixels_; // gpu::PixelHistory[max_pixels]
+    uint32_t tile_count_;
+    Kernel compare_, reconcile_, blend_;
+    Buffer compared_;              // gpu::PixelPairs[pixels]
+    Buffer tiles_;                 // gpu::TilePairs[tile_count_]
+    std::array<Buffer, 2> pixels_; // gpu::PixelHistory[pixels]
     uint32_t now_ = 0;
 };

@@ -56,7 +56,7 @@ const Buffer& ReferenceStage::record(Recorder& rec, const RayStage& rays, const 
             .pixel_count = pixel_count,
             .first_sample = in.camera.first_sample,
             .seed = in.camera.seed,
-            .stages = counted.stages,
+            .stages = in.emission ? counted.stages : counted.stages & ~(1u << gpu::kStageEye),
             .lobes = counted.lobes,
             .first_stage = gpu::kStageEye});
     return radiance_;

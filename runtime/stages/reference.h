@@ -15,6 +15,7 @@ public:
         gpu::CameraParams camera;      // sample_count <= max_batch, first_sample: how many the pixels have had
         uint32_t depth_limit;          // most vertices of a path; the rest of the light is lost
         uint32_t term = gpu::kTermAll; // kTerm*: the paths whose light is kept
+        bool emission = true;          // what the eye sees shine is kept, too
     };
     /// Traces camera.sample_count paths a pixel.
     /// @return radiance of this pass alone: vec3[sample_count * width * height]

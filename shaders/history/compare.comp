@@ -5,9 +5,9 @@
 #include "shaders/lib/signal.glsl"
 
 // Where light has changed since the last frame: what each pixel shows beside what its surface showed before, for its
-// surroundings to compare. One thread per pixel.
+// surroundings to compare, and sums of that over tiles, for what is farther away. One thread per pixel, one group per tile.
 
-layout(local_size_x = kRaysGroupSize) in;
+layout(local_size_x = kHistoryTileSize) in;
 layout(push_constant, scalar) uniform Params { HistoryParams params; };
 
 layout(set = 1, binding = 0, scalar) readonly buffer Motions { Motion motions[]; };
@@ -21,8 +21,16 @@ layout(set = 1, binding = 7, scalar) readonly buffer Indirect { vec3 indirect[];
 layout(set = 1, binding = 8, scalar) readonly buffer Caustics { vec3 caustics[]; };
 layout(set = 1, binding = 9, scalar) writeonly buffer Compared { PixelPairs pairs[]; };
 layout(set = 1, binding = 10, scalar) readonly buffer Displacements { vec3 displacements[]; };
+layout(set = 1, binding = 11, scalar) writeonly buffer Tiles { TilePairs tiles[]; };
 
+#include "shaders/lib/history_tile.glsl"
 #include "shaders/lib/recall.glsl"
+
+const uint kTerms = 4u;
+shared uint chosen;                       // the thread whose surface the tile's sums are of; its distance from the centre above
+shared SurfaceGuide surfaces[kHistoryTileSize];
+shared LightPair shown[kHistoryTileSize][kTerms];
+shared TermPairs rows[kHistoryTileSide][kTerms];
 
 LightPair pairOf(uvec4 bits, Memory past)
 {
@@ -30,15 +38,80 @@ LightPair pairOf(uvec4 bits, Memory past)
     return s.lobe == 0.0 ? LightPair(uvec2(0u)) : packPair(lightOver(s.light, s.reflectance, past), past);
 }
 
-void main()
+/// @return whether it has a surface
+bool comparePixel(uint pixel, uint thread)
 {
-    uint pixel = gl_GlobalInvocationID.x;
-    if (pixel >= params.point_count)
-        return;
     Past past = recall(pixel);
     vec3 reflectance = max(diffuse_points[pixel].reflectance, vec3(kLeastReflectance));
-    pairs[pixel] = PixelPairs(pairOf(direct_signals[pixel], past.direct),
+    PixelPairs p = PixelPairs(pairOf(direct_signals[pixel], past.direct),
                               packPair(lightOver(indirect[pixel], reflectance, past.indirect), past.indirect),
                               pairOf(glossy_signals[pixel], past.glossy),
                               packPair(lightOver(caustics[pixel], reflectance, past.caustics), past.caustics));
+    pairs[pixel] = p;
+    surfaces[thread] = guides[pixel];
+    shown[thread] = LightPair[kTerms](p.direct, p.indirect, p.glossy, p.caustics);
+    return motions[pixel].distance < kInfinity;
+}
+
+TermPairs addedTo(TermPairs sum, TermPairs more) { return TermPairs(sum.fresh + more.fresh, sum.past + more.past, sum.count + more.count); }
+
+/// Of the pixels in a row that show the surface, or of all rows.
+void sumRow(uint row, uint term, SurfaceGuide surface, float footprint)
+{
+    vec3 normal = octahedralToUnit(unpackSnorm4x8(surface.normals).xy);
+    TermPairs sum = TermPairs(vec3(0.0), vec3(0.0), 0.0);
+    for (uint x = 0u; x < kHistoryTileSide; ++x)
+    {
+        uint other = row * kHistoryTileSide + x;
+        uvec2 words = shown[other][term].words;
+        SurfaceGuide g = surfaces[other];
+        if (words.x != 0u && sameSurface(surface, normal, uvec4(floatBitsToUint(g.position), g.normals), footprint))
+            sum = addedTo(sum, TermPairs(unpackShared(words.x), unpackShared(words.y), 1.0));
+    }
+    rows[row][term] = sum;
+}
+
+void main()
+{
+    uint thread = gl_LocalInvocationID.x;
+    ivec2 here = tileCorner() + inTile(thread);
+    uint pixel = uint(here.y) * params.width + uint(here.x);
+    if (thread == 0u)
+        chosen = ~0u;
+    barrier();
+    shown[thread] = LightPair[kTerms](LightPair(uvec2(0u)), LightPair(uvec2(0u)), LightPair(uvec2(0u)), LightPair(uvec2(0u)));
+    if (all(lessThan(here, pictureSize())) && comparePixel(pixel, thread))
+    {
+        ivec2 off = 2 * inTile(thread) - int(kHistoryTileSide) + 1; // from the centre, halves of a pixel
+        atomicMin(chosen, uint(off.x * off.x + off.y * off.y) * kHistoryTileSize + thread);
+    }
+    barrier();
+    uint tile = gl_WorkGroupID.x;
+    if (chosen == ~0u) // sky
+    {
+        if (thread == 0u)
+            tiles[tile].guide.position = vec3(kInfinity);
+        return;
+    }
+    uint center = chosen % kHistoryTileSize;
+    ivec2 at = tileCorner() + inTile(center);
+    if (thread < kHistoryTileSide * kTerms)
+        sumRow(thread / kTerms, thread % kTerms, surfaces[center], footprintAt(motions[at.y * int(params.width) + at.x]));
+    barrier();
+    if (thread >= kTerms)
+        return;
+    TermPairs sum = rows[0][thread];
+    for (uint row = 1u; row < kHistoryTileSide; ++row)
+        sum = addedTo(sum, rows[row][thread]);
+    if (thread == 0u)
+    {
+        tiles[tile].guide = surfaces[center];
+        tiles[tile].direct = sum;
+    }
+    else if (thread == 1u)
+        tiles[tile].indirect = sum;
+    else if (thread == 2u)
+        tiles[tile].glossy = sum;
+    else
+        tiles[tile].caustics = sum;
 }

@@ -37,6 +37,28 @@ struct PixelPairs // by term; two texels
 };
 GPU_SIZE(PixelPairs, 32);
 
+// Tiles of the picture, of a group of threads each, where light has changed.
+GPU_CONST uint kHistoryTileSide = 8u; // pixels
+GPU_CONST uint kHistoryTileSize = 64u;
+
+struct TermPairs // sums over pixels of one surface
+{
+    vec3 fresh; // light over reflectance in this frame
+    vec3 past;  // and in the mean of those before
+    float count;
+};
+GPU_SIZE(TermPairs, 28);
+
+struct TilePairs // by term, over the pixels of a tile that show the same surface as the one nearest to its centre
+{
+    SurfaceGuide guide;
+    TermPairs direct;
+    TermPairs indirect;
+    TermPairs glossy;
+    TermPairs caustics;
+};
+GPU_SIZE(TilePairs, 128);
+
 struct HistoryParams
 {
     uint point_count;

@@ -1,7 +1,8 @@
-// What a history is worth where light has changed since it was made. The kernel declares `Compared` and what lib/recall.glsl wants.
-// Functions only.
+// What a history is worth where light has changed since it was made. The kernel, whose groups work on a tile each, declares
+// `Compared`, `readonly buffer Tiles`, and what lib/history_tile.glsl and lib/recall.glsl want. Functions and shared memory.
 #ifndef LIB_RECONCILE_GLSL
 #define LIB_RECONCILE_GLSL
+#include "shaders/lib/history_tile.glsl"
 #include "shaders/lib/light_pair.glsl"
 #include "shaders/lib/recall.glsl"
 
@@ -9,24 +10,43 @@
 // which find the edges of shadows that move. With less, frames follow their own noise; with more, light lags.
 const float kChance = 2.0, kNearChance = 3.0;
 const int kReach = 3; // pixels to each side: fewer tell less, more blur what has changed
-const int kFarStep = 8; // pixels: of those that lie further apart, which show what has changed everywhere
+const int kTilesBeside = 3, kTileStep = 2; // along either axis, and how far apart: tiles that show what has changed everywhere
 
-// Places that tell of a pixel's surroundings: all next to it, then every second one up to kReach along either axis, then as many
-// far from it. All pixels up to kReach would take three times as long.
-const int kNearPlaces = 9, kWidePlaces = 16, kPlaces = kNearPlaces + 2 * kWidePlaces;
+// Places that tell of a pixel's surroundings: all next to it, then every second one up to kReach along either axis. All pixels up
+// to kReach would take twice as long.
+const int kNearPlaces = 9, kPlaces = kNearPlaces + 16;
 ivec2 placeOf(int k)
 {
-    if (k < kNearPlaces)
-        return ivec2(k % 3, k / 3) - 1;
-    ivec2 place = ivec2(k % 4, k / 4 % 4) * 2 - kReach;
-    return k < kNearPlaces + kWidePlaces ? place : place * kFarStep;
+    return k < kNearPlaces ? ivec2(k % 3, k / 3) - 1 : ivec2((k - kNearPlaces) % 4, (k - kNearPlaces) / 4) * 2 - kReach;
 }
 
 bool isNear(ivec2 offset) { return all(lessThanEqual(abs(offset), ivec2(1))); }
+
+// The tile with as many pixels around it as its own look at.
+const int kBlockSide = int(kHistoryTileSide) + 2 * kReach, kBlockSize = kBlockSide * kBlockSide;
+shared uvec4 block_guides[kBlockSize]; // SurfaceGuide
+shared uvec4 block_pairs[kBlockSize][2]; // PixelPairs
+
+/// All threads of the group take part; a barrier follows.
+void loadSurroundings()
+{
+    ivec2 corner = tileCorner() - kReach, size = pictureSize();
+    for (int i = int(gl_LocalInvocationID.x); i < kBlockSize; i += int(kHistoryTileSize))
+    {
+        ivec2 place = corner + ivec2(i % kBlockSide, i / kBlockSide);
+        bool outside = any(lessThan(place, ivec2(0))) || any(greaterThanEqual(place, size));
+        int pixel = outside ? 0 : place.y * size.x + place.x;
+        SurfaceGuide g = guides[pixel];
+        block_guides[i] = uvec4(floatBitsToUint(outside ? vec3(kInfinity) : g.position), g.normals);
+        block_pairs[i][0] = texelFetch(Compared, 2 * pixel);
+        block_pairs[i][1] = texelFetch(Compared, 2 * pixel + 1);
+    }
+}
+
 // Noise of a frame, as a part of its light, for as long as there are too few to tell.
 const float kLikelyNoise = 0.25;
 // What part of its noise a pixel shares with those around it. Irradiance samples and photons serve many pixels at once.
-const float kOwnRays = 0.0, kSharedSamples = 0.3, kSharedFar = 0.1;
+const float kOwnRays = 0.0, kSharedSamples = 0.3, kSharedFar = 0.5;
 
 struct Change // light in the history -> what it would be now
 {
@@ -65,10 +85,8 @@ float singleVariance(Pairs pairs, Memory past)
     return max(around, square_ * noise * min(factor, 1.0));
 }
 
-void reconcileTerm(inout Memory past, Pairs far, Pairs wide, Pairs near, float shared_)
+void reconcileMemory(inout Memory past, Pairs far, Pairs wide, Pairs near, float shared_)
 {
-    if (past.frames == 0.0)
-        return;
     Change change = Change(clamp(vec3(1.0), params.least, params.most), vec3(0.0)); // so much is sure
     past.light *= change.gain;
     float single = singleVariance(wide, past);
@@ -77,50 +95,98 @@ void reconcileTerm(inout Memory past, Pairs far, Pairs wide, Pairs near, float s
     follow(past, change, near, single, shared_, kNearChance);
 }
 
-struct Surroundings // by term
+struct Surroundings // of a pixel, that show the same surface
 {
-    Pairs direct, indirect, glossy, caustics;
+    uint places; // bits, by k of placeOf()
+    uint tiles;  // bits, row by row
 };
 
-void addPixel(inout Surroundings s, int pixel)
+const int kTilesAround = kTilesBeside * kTilesBeside;
+ivec2 tileOf(int k) { return tilePlace() + (ivec2(k % kTilesBeside, k / kTilesBeside) - kTilesBeside / 2) * kTileStep; }
+
+int blockIndex(int k)
 {
-    uvec4 first = texelFetch(Compared, 2 * pixel), second = texelFetch(Compared, 2 * pixel + 1);
-    addPair(s.direct, first.xy);
-    addPair(s.indirect, first.zw);
-    addPair(s.glossy, second.xy);
-    addPair(s.caustics, second.zw);
+    ivec2 place = inTile(gl_LocalInvocationID.x) + kReach + placeOf(k);
+    return place.y * kBlockSide + place.x;
+}
+
+int tileIndex(int k) { return tileOf(k).y * tileCounts().x + tileOf(k).x; }
+
+Surroundings surroundingsOf(uint pixel)
+{
+    SurfaceGuide guide = guides[pixel];
+    vec3 normal = octahedralToUnit(unpackSnorm4x8(guide.normals).xy);
+    float footprint = footprintAt(motions[pixel]);
+    Surroundings found = Surroundings(0u, 0u);
+    for (int k = 0; k < kPlaces; ++k)
+    {
+        bool twice = k >= kNearPlaces && isNear(placeOf(k));
+        if (!twice && sameSurface(guide, normal, block_guides[blockIndex(k)], footprint))
+            found.places |= 1u << k;
+    }
+    for (int k = 0; k < kTilesAround; ++k)
+    {
+        ivec2 tile = tileOf(k);
+        if (any(lessThan(tile, ivec2(0))) || any(greaterThanEqual(tile, tileCounts())))
+            continue;
+        SurfaceGuide g = tiles[tileIndex(k)].guide;
+        if (sameSurface(guide, normal, uvec4(floatBitsToUint(g.position), g.normals), footprint))
+            found.tiles |= 1u << k;
+    }
+    return found;
+}
+
+void addTile(inout Pairs far, TermPairs sum)
+{
+    far.fresh += sum.fresh;
+    far.past += sum.past;
+    far.count += sum.count;
+}
+
+const uint kDirectTerm = 0u, kIndirectTerm = 1u, kGlossyTerm = 2u, kCausticTerm = 3u; // in the order of PixelPairs
+
+void addTile(inout Pairs far, int tile, uint term)
+{
+    if (term == kDirectTerm)
+        addTile(far, tiles[tile].direct);
+    else if (term == kIndirectTerm)
+        addTile(far, tiles[tile].indirect);
+    else if (term == kGlossyTerm)
+        addTile(far, tiles[tile].glossy);
+    else
+        addTile(far, tiles[tile].caustics);
+}
+
+/// One term after the other: sums of all four at a time would take too many registers.
+void reconcileTerm(inout Memory past, Surroundings around, uint term, float shared_)
+{
+    if (past.frames == 0.0)
+        return;
+    Pairs far = kNoPairs, wide = kNoPairs, near = kNoPairs;
+    for (int k = 0; k < kPlaces; ++k)
+    {
+        if ((around.places >> k & 1u) == 0u)
+            continue;
+        uvec4 texel = block_pairs[blockIndex(k)][term / 2u];
+        uvec2 words = term % 2u == 0u ? texel.xy : texel.zw;
+        addPair(wide, words);
+        if (k < kNearPlaces)
+            addPair(near, words);
+    }
+    for (int k = 0; k < kTilesAround; ++k)
+        if ((around.tiles >> k & 1u) != 0u)
+            addTile(far, tileIndex(k), term);
+    reconcileMemory(past, far, wide, near, shared_);
 }
 
 /// Compares what the surface shows around the pixel with what it showed.
 void reconcile(inout Past past, uint pixel)
 {
-    ivec2 size = ivec2(params.width, params.point_count / params.width);
-    ivec2 here = ivec2(pixel % params.width, pixel / params.width);
-    SurfaceGuide guide = guides[pixel];
-    vec3 normal = octahedralToUnit(unpackSnorm4x8(guide.normals).xy);
-    float footprint = footprintAt(motions[pixel]);
-    Surroundings far = Surroundings(kNoPairs, kNoPairs, kNoPairs, kNoPairs), wide = far, near = far;
-    for (int k = 0; k < kPlaces; ++k)
-    {
-        ivec2 offset = placeOf(k), place = here + offset;
-        bool twice = k >= kNearPlaces && isNear(offset);
-        if (twice || any(lessThan(place, ivec2(0))) || any(greaterThanEqual(place, size)))
-            continue;
-        int other = place.y * size.x + place.x;
-        SurfaceGuide g = guides[other];
-        if (!sameSurface(guide, normal, uvec4(floatBitsToUint(g.position), g.normals), footprint))
-            continue;
-        if (k >= kNearPlaces + kWidePlaces)
-            addPixel(far, other);
-        else
-            addPixel(wide, other);
-        if (k < kNearPlaces)
-            addPixel(near, other);
-    }
-    reconcileTerm(past.direct, far.direct, wide.direct, near.direct, kOwnRays);
-    reconcileTerm(past.indirect, far.indirect, wide.indirect, near.indirect, kSharedSamples);
-    reconcileTerm(past.glossy, far.glossy, wide.glossy, near.glossy, kOwnRays);
-    reconcileTerm(past.caustics, far.caustics, wide.caustics, near.caustics, kSharedSamples);
+    Surroundings around = surroundingsOf(pixel);
+    reconcileTerm(past.direct, around, kDirectTerm, kOwnRays);
+    reconcileTerm(past.indirect, around, kIndirectTerm, kSharedSamples);
+    reconcileTerm(past.glossy, around, kGlossyTerm, kOwnRays);
+    reconcileTerm(past.caustics, around, kCausticTerm, kSharedSamples);
 }
 
 #endif

@@ -11,7 +11,7 @@
 
 namespace
 {
-constexpr uint32_t kWidth = 40, kHeight = 24, kPixels = kWidth * kHeight;
+constexpr uint32_t kWidth = 42, kHeight = 26, kPixels = kWidth * kHeight; // no whole number of tiles
 
 // Rounding: of a memory's mantissas, once a frame, and of a signal's light and reflectance, packed and unpacked twice.
 constexpr double kMantissa = 1.0 / 16383, kSignal = 2 * (3 * 0.5 / 4095 + 0x1p-11);
@@ -24,7 +24,7 @@ protected:
         path_ = builder_.compile();
         scene_ = GiTest::load(path_);
         signals_.emplace(device(), *scene_, kPixels);
-        history_.emplace(device(), kPixels);
+        history_.emplace(device(), kWidth, kHeight);
         primary_.emplace(device(), *scene_, kPixels);
         light_.emplace(device(), kPixels);
     }
@@ -319,8 +319,10 @@ TEST(LightRange, IsThatOfTheFactorsOfAllThatEmits)
     before.lights[1].emission = {1, 1, 0};
     Emitters now = before;
     EXPECT_EQ(lightRange(before, now), (LightRange{{1, 1, 1}, {1, 1, 1}}));
+    EXPECT_TRUE(lightRange(before, now).isOneFactor());
     now.lights[0].emission = {2, 6, 0};
     EXPECT_EQ(lightRange(before, now), (LightRange{{0.5f, 1, 1}, {1, 3, 1}}));
+    EXPECT_FALSE(lightRange(before, now).isOneFactor());
     now.emissions[0] = {1, 1, 0};
     EXPECT_EQ(lightRange(before, now), (LightRange{{0.5f, 1, 0}, {1, 3, 0}}));
     EXPECT_EQ(lightRange(before, now).surely().z, 0);

@@ -95,6 +95,22 @@ TEST_P(RendererTest, StartsAnewWithTheCameraWithTheSeedAndWhenAsked)
 INSTANTIATE_TEST_SUITE_P(, RendererTest, testing::Values(Mode::kDirect, Mode::kReference),
                          [](const auto& mode) { return mode.param == Mode::kDirect ? "Direct" : "Reference"; });
 
+/// Of the same samples, only that what the eye sees shine is added last.
+TEST_F(GpuTest, FilteredPathsAreTheReferenceWhereNothingIsFiltered)
+{
+    SceneBuilder builder;
+    builder.box({-1, 0, -1}, {1, 2, 1}, builder.material(lambert(0.6)), true);
+    builder.quad({-0.3f, 1.99f, -0.3f}, {0.6f, 0, 0}, {0, 0, 0.6f}, builder.material(emitter(8)));
+    const auto scene = load(builder.compile());
+    const Settings plain{.denoise_passes = 0, .history_frames = 0, .antialias_frames = 0};
+    const auto picture = [&](Mode mode, const Settings& settings)
+    { return render(*scene, kCamera, settings, 1, kWidth, kHeight, mode, 1).pixels; };
+    const auto reference = picture(Mode::kReference, plain), paths = picture(Mode::kFilteredPaths, plain);
+    for (size_t i = 0; i < reference.size(); ++i)
+        EXPECT_NEAR(paths[i].x, reference[i].x, 1e-6 * reference[i].x) << i; // roundings of a handful of sums
+    EXPECT_FALSE(equalBits(paths, picture(Mode::kFilteredPaths, Settings())));
+}
+
 class Batches : public GpuTest
 {
 protected:

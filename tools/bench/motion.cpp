@@ -153,7 +153,7 @@ Status measureSequence(const OpenedPackage& opened, const MotionBenchOptions& op
 
 uint32_t frameSeed(const MotionBenchOptions& options, int32_t frame)
 {
-    if (modeOf(options) == Mode::kGi && goesOn(options.settings))
+    if (modeOf(options) != Mode::kDirect && goesOn(options.settings))
         return options.seed; // the renderer takes other numbers in every frame
     // A bijection, so that no two frames are the same, whose numbers are far apart: stages add small ones of their own.
     uint32_t x = options.seed * 0x9e3779b9u + uint32_t(frame);
@@ -164,7 +164,7 @@ uint32_t frameSeed(const MotionBenchOptions& options, int32_t frame)
 
 Mode modeOf(const MotionBenchOptions& options)
 {
-    return options.mode == "gi" ? Mode::kGi : options.mode == "direct" ? Mode::kDirect : Mode::kReference;
+    return options.mode == "gi" ? Mode::kGi : options.mode == "direct" ? Mode::kDirect : Mode::kFilteredPaths;
 }
 
 Status benchMotion(const MotionBenchOptions& options)
