@@ -3,6 +3,7 @@
 #include "image/picture_file.h"
 #include "image/sample_sum.h"
 #include "runtime/interruption.h"
+#include "runtime/nearest_origin.h"
 #include "runtime/stages/exact_sum.h"
 
 #include <algorithm>
@@ -36,13 +37,9 @@ Result<bool> isThere(const PlayerOptions& options)
                         origin->samples.empty() ? "no sums of samples" : fmt::format("samples {}", origin->samples),
                         hint),
             options.output.string()};
-    const bool same =
-        std::ranges::any_of(*wanted, [&](const PictureOrigin& one) { return difference(*origin, one).empty(); });
-    if (!same)
-        return Error{
-            ExitCode::kInvalid,
-            fmt::format("is there already and was rendered {}; {}", difference(*origin, wanted->front()), hint),
-            options.output.string()};
+    if (const std::string differing = nearestDifference(*origin, *wanted); !differing.empty())
+        return Error{ExitCode::kInvalid, fmt::format("is there already and was rendered {}; {}", differing, hint),
+                     options.output.string()};
     return true;
 }
 

@@ -5,6 +5,7 @@
 #include "runtime/frame_seed.h"
 #include "runtime/headless.h"
 #include "runtime/interruption.h"
+#include "runtime/nearest_origin.h"
 #include "runtime/opened_scene.h"
 
 #include <algorithm>
@@ -186,7 +187,7 @@ Status checkOrigins(const FrameFiles& files, std::span<const uint32_t> frames, s
         const auto origin = readOrigin(path);
         if (!origin)
             return origin.error().about(path.string());
-        const std::string differing = difference(*origin, origins.front());
+        const std::string differing = nearestDifference(*origin, origins);
         std::erase_if(origins, [&](const PictureOrigin& wanted) { return !difference(*origin, wanted).empty(); });
         if (origins.empty())
             return Error{

@@ -82,8 +82,7 @@ fi
 for ((i = 0; i < ${#player[@]}; i += 2)); do
     [[ ${player[i]} != --fps ]] || film_options=("${player[i + 1]}")
 done
-if [[ $kind == frames && $((chunk % 64)) -ne 0 && $((last - first)) -ge $chunk && " ${player[*]} " != *" --spp "* &&
-    " ${player[*]} " != *" --mode direct "* && " ${player[*]} " != *" --mode reference "* ]]; then
+if [[ $kind == frames && $((chunk % 64)) -ne 0 && $((last - first)) -ge $chunk && " ${player[*]} " != *" --spp "* ]]; then
     echo "note: chunks of $chunk frames begin within parts of 64 frames, so that tasks render frames that they throw away" >&2
 fi
 list_file=
