@@ -37,7 +37,7 @@ TEST_F(FarmTask, LeavesAMixedFilmToNobody)
 
     expectRefused("--frames 0-3 --seed 1", "(seed 0, not 1)");
     expectRefused("--frames 0-3 --set exposure=1", "(exposure 0, not 1)");
-    expectRefused("--frames 0-3 --fps 24 --list-missing", "(fps 12, not 24)");
+    expectRefused("--frames 0-3 --time 0.5 --list-missing", "(time none, not 0.5)");
     expectPlayed("film", "--frames 0-1"); // what is as it was goes on
     std::ofstream(folder_ / "path.json") << R"({"schema": "lumicut-path/1", "keys": [{"time": 0, "camera": 0},
             {"time": 1, "position": [0.3, 1, 2.5], "forward": [-0.1, 0, -1]}]})";
