@@ -52,7 +52,7 @@ TEST_F(FarmTask, LeavesAMixedFilmToNobody)
 TEST_F(FarmTask, SaysThatAnotherTryMaySucceed)
 {
     expectPlayed("whole", "--frames 0-2");
-    for (const char* failure : {"lost:3", "memory:30"})
+    for (const char* failure : {"lost:1", "memory:5"})
     {
         const ProgramRun run = playWith(failure, "tried", "--frames 0-2");
         EXPECT_EQ(run.exit_code, 75) << failure << run.err;
@@ -84,7 +84,7 @@ TEST_F(FarmTask, NamesAFullDiskAndAVanishedShareInALine)
 TEST_F(FarmTask, EndsInTheMiddleOfAStepThatTakesTooLong)
 {
     expectPlayed("whole", "--frames 0-1");
-    const ProgramRun run = playWith("stuck:3", "stuck", "--frames 0-1");
+    const ProgramRun run = playWith("stuck:1", "stuck", "--frames 0-1");
     EXPECT_EQ(run.exit_code, 143) << run.err;
     EXPECT_TRUE(contains(run.err, "before the step at work was done")) << run.err;
     for (const std::string& name : files("stuck"))
