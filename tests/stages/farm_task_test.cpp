@@ -37,7 +37,7 @@ TEST_F(FarmTask, LeavesAMixedFilmToNobody)
 
     expectRefused("--frames 0-3 --seed 1", "(seed 0, not 1)");
     expectRefused("--frames 0-3 --set exposure=1", "(exposure 0, not 1)");
-    expectRefused("--frames 0-3 --fps 24 --list-missing", "(fps 12, not 24)");
+    expectRefused("--frames 0-3 --time 0.5 --list-missing", "(time none, not 0.5)");
     expectPlayed("film", "--frames 0-1"); // what is as it was goes on
     std::ofstream(folder_ / "path.json") << R"({"schema": "lumicut-path/1", "keys": [{"time": 0, "camera": 0},
             {"time": 1, "position": [0.3, 1, 2.5], "forward": [-0.1, 0, -1]}]})";
@@ -52,7 +52,7 @@ TEST_F(FarmTask, LeavesAMixedFilmToNobody)
 TEST_F(FarmTask, SaysThatAnotherTryMaySucceed)
 {
     expectPlayed("whole", "--frames 0-2");
-    for (const char* failure : {"lost:3", "memory:30"})
+    for (const char* failure : {"lost:1", "memory:5"})
     {
         const ProgramRun run = playWith(failure, "tried", "--frames 0-2");
         EXPECT_EQ(run.exit_code, 75) << failure << run.err;
@@ -84,7 +84,7 @@ TEST_F(FarmTask, NamesAFullDiskAndAVanishedShareInALine)
 TEST_F(FarmTask, EndsInTheMiddleOfAStepThatTakesTooLong)
 {
     expectPlayed("whole", "--frames 0-1");
-    const ProgramRun run = playWith("stuck:3", "stuck", "--frames 0-1");
+    const ProgramRun run = playWith("stuck:1", "stuck", "--frames 0-1");
     EXPECT_EQ(run.exit_code, 143) << run.err;
     EXPECT_TRUE(contains(run.err, "before the step at work was done")) << run.err;
     for (const std::string& name : files("stuck"))
