@@ -293,6 +293,8 @@ PhotonTreeStage::Output GlobalIllumination::recordMap(const Context& c)
     const PhotonStage::Output stored = [&]
     {
         const auto scope = c.rec.scope("photons");
+        if (guide_)
+            guide_->followLights(c.rec);
         if (guide_ && !guide_->hasLearned())
             warmUp(c);
         return emitPhotons(c);
