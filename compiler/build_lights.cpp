@@ -3,7 +3,6 @@
 #include "compiler/caustic_targets.h"
 #include "compiler/emission_average.h"
 #include "compiler/environment.h"
-#include "compiler/flatten.h"
 #include "compiler/vector_math.h"
 #include "format/light_table.h"
 #include "format/spot_cone.h"
@@ -29,8 +28,14 @@ package::LightSurroundings surroundingsOf(const SceneData& scene)
     package::LightSurroundings around;
     if (!scene.mesh.positions.empty())
     {
-        const Bounds box = bounds(scene.mesh);
-        around.radius = package::sphereRadius(box.min, box.max);
+        gpu::vec3 low = scene.mesh.positions[0];
+        gpu::vec3 high = low;
+        for (const gpu::vec3& p : scene.mesh.positions)
+        {
+            low = min(low, p);
+            high = max(high, p);
+        }
+        around.radius = package::sphereRadius(low, high);
     }
     if (scene.environment)
         around.average_radiance = averageRadiance(*scene.environment);

@@ -4,6 +4,7 @@
 #   tools/soak.sh [OPTION...] MINUTES
 #     --scenes A,B,...   of lumicut-scenes; default door,lamp,walker,ball. Each has its part of the time
 #     --preset NAME      of mode gi; default preview
+#     --size WxH         of the window at first and when memory is read; default 320x180
 #     --seed N           of what is done when; default 1
 #     --out FOLDER       packages and logs; default build/soak
 # On a virtual display, keys choose clips, pause, step, scrub and change the speed, the panel comes and goes, and the window changes
@@ -15,15 +16,15 @@
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/bench/scenes.sh"
 
-scenes=door,lamp,walker,ball preset=preview seed=1 out=$root/build/soak
-read_options scenes= preset= seed= out= -- "$@"
+scenes=door,lamp,walker,ball preset=preview size=320x180 seed=1 out=$root/build/soak
+read_options scenes= preset= size= seed= out= -- "$@"
 [[ ${operands[0]-} =~ ^[0-9]+([.][0-9]+)?$ ]] || fail 2 "how many minutes?"
 command -v xdotool >/dev/null && command -v Xvfb >/dev/null || fail 2 "xdotool or Xvfb is missing (Debian: xdotool xvfb)"
 mkdir -p "$out"
 build_programs
 seconds=$(awk -v minutes="${operands[0]}" -v count="$(wc -w <<<"${scenes//,/ }")" 'BEGIN { printf "%d", minutes * 60 / count }')
 RANDOM=$seed
-width=320 height=180
+width=${size%x*} height=${size#*x}
 
 Xvfb -displayfd 3 -screen 0 1280x720x24 3>"$out/display" >"$out/xvfb.log" 2>&1 &
 server=$! player=

@@ -74,7 +74,7 @@ TEST(PackageRoundTrip, EveryChunkComesBackAsWritten)
     ASSERT_TRUE(package) << package.error().message;
     expectSample(*package, sample);
     EXPECT_EQ(package->fileBytes(), bytes.size());
-    EXPECT_EQ(package->chunks().size(), 15u);
+    EXPECT_EQ(package->chunks().size(), 16u);
     EXPECT_TRUE(std::isfinite(walkPackage(*package)));
 }
 
