@@ -179,7 +179,7 @@ const Buffer& GlobalIllumination::record(Recorder& rec, const RayStage& rays, co
     return picture;
 }
 
-void GlobalIllumination::recordDirect(const Context& c) const
+void GlobalIllumination::recordDirect(const Context& c)
 {
     direct_.record(c.rec, c.rays,
                    {.points = c.surface.points,
@@ -252,6 +252,8 @@ PhotonTreeStage::Output GlobalIllumination::recordMap(const Context& c)
     const PhotonStage::Output stored = [&]
     {
         const auto scope = c.rec.scope("photons");
+        if (guide_)
+            guide_->followLights(c.rec);
         if (guide_ && !guide_->hasLearned())
             warmUp(c);
         return emitPhotons(c);

@@ -5,16 +5,21 @@
 #include <map>
 #include <numeric>
 
-namespace
+LightKind lightKind(const gpu::Light& light)
 {
-LightKind kindOf(const LightProbability& light)
-{
-    return !light.isInfinite()  ? LightKind::kLocal
-           : light.isPunctual() ? LightKind::kDirectional
-                                : LightKind::kEnvironment;
+    return light.kind == gpu::kLightDirectional   ? LightKind::kDirectional
+           : light.kind == gpu::kLightEnvironment ? LightKind::kEnvironment
+                                                  : LightKind::kLocal;
 }
 
-void addCluster(LightGroups& result, std::span<const LightProbability> lights, const std::vector<uint32_t>& members)
+bool isPunctual(const gpu::Light& light)
+{
+    return light.kind < gpu::kLightTriangle;
+}
+
+namespace
+{
+void addCluster(LightGroups& result, std::span<const gpu::Light> lights, const std::vector<uint32_t>& members)
 {
     std::vector<double> weights;
     for (const uint32_t light : members)
@@ -31,15 +36,15 @@ void addCluster(LightGroups& result, std::span<const LightProbability> lights, c
 }
 } // namespace
 
-LightGroups groupLights(std::span<const LightProbability> lights)
+LightGroups groupLights(std::span<const gpu::Light> lights, std::span<const uint32_t> clusters_of)
 {
     LightGroups result{.groups = {}, .clusters = {}, .picks = {}, .densities = std::vector<float>(lights.size())};
     for (const LightKind kind : {LightKind::kDirectional, LightKind::kEnvironment, LightKind::kLocal})
     {
         std::map<uint32_t, std::vector<uint32_t>> clusters;
         for (uint32_t i = 0; i < lights.size(); ++i)
-            if (kindOf(lights[i]) == kind && lights[i].pmf > 0)
-                clusters[lights[i].cluster].push_back(i);
+            if (lightKind(lights[i]) == kind && lights[i].pmf > 0)
+                clusters[kind == LightKind::kLocal ? clusters_of[i] : 0].push_back(i);
         if (clusters.empty())
             continue;
         const std::vector<uint32_t>& first = clusters.begin()->second;
@@ -47,7 +52,7 @@ LightGroups groupLights(std::span<const LightProbability> lights)
             {.kind = kind,
              .first_cluster = uint32_t(result.clusters.size()),
              .cluster_count = uint32_t(clusters.size()),
-             .one_place = clusters.size() == 1 && first.size() == 1 && lights[first[0]].isPunctual()});
+             .one_place = clusters.size() == 1 && first.size() == 1 && isPunctual(lights[first[0]])});
         for (const auto& [number, members] : clusters)
             addCluster(result, lights, members);
     }

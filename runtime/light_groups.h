@@ -1,9 +1,9 @@
 // Lights grouped into directional, environment and local ones, each group with clusters that have alias tables: direct light samples
 // every group.
 #pragma once
-#include "runtime/scene_gpu.h"
 #include "shaders/direct/direct.h"
 
+#include <span>
 #include <vector>
 
 enum class LightKind
@@ -30,4 +30,10 @@ struct LightGroups
 };
 
 /// Within a cluster, lights are picked in proportion to their pmf. Lights of pmf 0 are in none.
-LightGroups groupLights(std::span<const LightProbability> lights);
+/// @param clusters of local lights, by light
+LightGroups groupLights(std::span<const gpu::Light> lights, std::span<const uint32_t> clusters);
+
+/// Directional or environment: its power does not tell how much of it is visible. Otherwise it is a local light.
+LightKind lightKind(const gpu::Light& light);
+/// It comes from one place or direction.
+bool isPunctual(const gpu::Light& light);

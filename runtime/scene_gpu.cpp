@@ -1,7 +1,6 @@
 #include "runtime/scene_gpu.h"
 
 #include "format/material.h"
-#include "runtime/light_clusters.h"
 #include "runtime/texture_pages.h"
 #include "shaders/gather/harmonics.h"
 #include "shaders/pose/pose.h"
@@ -136,15 +135,9 @@ bool hasSmoothLayer(const gpu::Material& material)
 Result<std::unique_ptr<SceneGpu>> SceneGpu::create(const Device& device, const package::Package& package)
 {
     std::unique_ptr<SceneGpu> scene(new SceneGpu(device));
-    scene->emitters_.lights.assign(package.lights().begin(), package.lights().end());
-    const std::vector<uint32_t> clusters = clusterLights(scene->emitters_.lights);
-    for (size_t i = 0; i < clusters.size(); ++i)
-    {
-        const gpu::Light& light = scene->emitters_.lights[i];
-        scene->light_probabilities_.push_back({.kind = light.kind, .pmf = light.pmf, .cluster = clusters[i]});
-    }
+    scene->lights_.emplace(device, package);
     for (const gpu::Material& material : package.materials())
-        scene->emitters_.emissions.push_back(material.emission);
+        scene->emissions_.push_back(material.emission);
     std::optional<Error> too_large;
     const auto fits = [&](const char* name, auto data, uint64_t limit)
     {
@@ -202,22 +195,23 @@ SceneGpu::~SceneGpu()
     vkDestroySampler(device_.handle(), environment_sampler_, nullptr);
 }
 
-void SceneGpu::setLight(Recorder& rec, uint32_t index, const gpu::Light& light)
+void SceneGpu::setLights(Recorder& rec, std::span<const ChangedLight> changed)
 {
-    check(index < info_.light_count, "light {} of {}", index, info_.light_count);
+    if (changed.empty())
+        return;
     ++version_.lights;
-    emitters_.lights[index] = light;
-    rec.write(buffers_[gpu::kLightsBinding - gpu::kBvhNodesBinding], index * sizeof(light),
-              std::as_bytes(std::span(&light, 1)));
+    lights_->set(rec, changed, buffer(gpu::kLightsBinding), buffer(gpu::kLightAliasesBinding));
 }
 
-void SceneGpu::setLightEmission(Recorder& rec, uint32_t index, gpu::vec3 emission)
+void SceneGpu::setLight(Recorder& rec, uint32_t index, const gpu::Light& light)
 {
-    check(index < info_.light_count, "light {} of {}", index, info_.light_count);
-    ++version_.lights;
-    emitters_.lights[index].emission = emission;
-    rec.write(buffer(gpu::kLightsBinding), index * sizeof(gpu::Light) + offsetof(gpu::Light, emission),
-              std::as_bytes(std::span(&emission, 1)));
+    const ChangedLight changed{index, light};
+    setLights(rec, std::span(&changed, 1));
+}
+
+Emitters SceneGpu::emitters() const
+{
+    return {.lights = {lights().begin(), lights().end()}, .emissions = emissions_};
 }
 
 void SceneGpu::setEmission(Recorder& rec, uint32_t index, gpu::vec3 emission)
@@ -226,7 +220,7 @@ void SceneGpu::setEmission(Recorder& rec, uint32_t index, gpu::vec3 emission)
     check((index + 1) * sizeof(gpu::Material) <= materials.size(), "material {} of {} bytes of them", index,
           materials.size());
     ++version_.lights;
-    emitters_.emissions[index] = emission;
+    emissions_[index] = emission;
     rec.write(materials, index * sizeof(gpu::Material) + offsetof(gpu::Material, emission),
               std::as_bytes(std::span(&emission, 1)));
 }
@@ -237,7 +231,7 @@ void SceneGpu::setMaterial(Recorder& rec, uint32_t index, const gpu::Material& m
     check((index + 1) * sizeof(material) <= materials.size(), "material {} of {} bytes of them", index,
           materials.size());
     ++version_.materials;
-    emitters_.emissions[index] = material.emission;
+    emissions_[index] = material.emission;
     rec.write(materials, index * sizeof(material), std::as_bytes(std::span(&material, 1)));
 }
 

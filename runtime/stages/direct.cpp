@@ -1,27 +1,34 @@
 #include "runtime/stages/direct.h"
 
+#include "runtime/light_clusters.h"
+
 #include <algorithm>
+#include <array>
 
 namespace
 {
 constexpr uint32_t kGroupSeed = 0x9e3779b9; // times the kind: groups are sampled independently of each other
 constexpr uint32_t kSurveySeed = 0x85ebca6b;
 
-/// Of local lights.
-uint32_t localClusters(const SceneGpu& scene)
+/// Of several lights of a kind one is chosen; those that are dark now may shine later.
+bool hasChoice(std::span<const gpu::Light> lights)
 {
-    std::vector<uint32_t> clusters;
-    for (const LightProbability& light : scene.lightProbabilities())
-        if (!light.isInfinite() && light.pmf > 0)
-            clusters.push_back(light.cluster);
-    std::ranges::sort(clusters);
-    return uint32_t(std::ranges::unique(clusters).begin() - clusters.begin());
+    std::array<uint32_t, 3> counts{};
+    for (const gpu::Light& light : lights)
+        ++counts[size_t(lightKind(light))];
+    return std::ranges::any_of(counts, [](uint32_t count) { return count > 1; });
+}
+
+/// Of local lights, dark ones included.
+uint32_t countOf(std::span<const uint32_t> clusters)
+{
+    return clusters.empty() ? 0 : std::ranges::max(clusters) + 1;
 }
 } // namespace
 
 DirectStage::DirectStage(const Device& device, const SceneGpu& scene, uint32_t width, uint32_t height,
                          uint32_t path_count, const Scratch& scratch)
-    : lights_(groupLights(scene.lightProbabilities())), width_(width), height_(height),
+    : scene_(scene), clusters_of_(clusterLights(scene.lights())), width_(width), height_(height),
       sample_(device.kernel("direct/sample", scene.constants())),
       emitted_(device.kernel("direct/emitted", scene.constants())),
       emitter_queue_(device, "direct.emitter_queue", width * height * path_count, scratch),
@@ -29,13 +36,13 @@ DirectStage::DirectStage(const Device& device, const SceneGpu& scene, uint32_t w
       shadow_rays_(device.array<gpu::ShadowRay>("direct.shadow_rays", width * height * path_count, scratch)),
       emitter_rays_(device.array<gpu::EmitterRay>("direct.emitter_rays", width * height * path_count, scratch)),
       hits_(device.texelArray<gpu::Hit>("direct.hits", width * height * path_count, scratch)),
-      clusters_(device.upload<gpu::LightCluster>("direct.clusters", lights_.clusters)),
-      picks_(device.upload<gpu::LightPick>("direct.picks", lights_.picks)),
-      densities_(device.upload<float>("direct.densities", lights_.densities)),
+      clusters_(device.array<gpu::LightCluster>("direct.clusters", countOf(clusters_of_) + 2)),
+      picks_(device.array<gpu::LightPick>("direct.picks", std::max<size_t>(scene.lights().size(), 1))),
+      densities_(device.array<float>("direct.densities", std::max<size_t>(scene.lights().size(), 1))),
       rest_size_(device.array<gpu::QueueSize>("direct.rest_size", 1)), has_area_lights_(scene.hasAreaLights()),
-      is_noisy_(has_area_lights_ || !std::ranges::all_of(lights_.groups, &LightGroup::one_place))
+      is_noisy_(has_area_lights_ || hasChoice(scene.lights()))
 {
-    const uint32_t clusters = localClusters(scene);
+    const uint32_t clusters = countOf(clusters_of_);
     if (clusters > 1)
         survey_.emplace(device, scene, clusters, width, height, path_count, scratch);
     rest_rays_ = device.array<gpu::ShadowRay>("direct.rest_rays", survey_ ? width * height * path_count : 1, scratch);
@@ -44,24 +51,40 @@ DirectStage::DirectStage(const Device& device, const SceneGpu& scene, uint32_t w
 
 uint64_t DirectStage::scratchBytes(const SceneGpu& scene, uint32_t width, uint32_t height, uint32_t path_count)
 {
-    const uint32_t clusters = localClusters(scene);
+    const uint32_t clusters = countOf(clusterLights(scene.lights()));
     const uint64_t a_point =
         sizeof(gpu::Ray) + (clusters > 1 ? 2 : 1) * sizeof(gpu::ShadowRay) + sizeof(gpu::EmitterRay) + sizeof(gpu::Hit);
     return uint64_t(width) * height * path_count * a_point +
            (clusters > 1 ? LightSurvey::scratchBytes(clusters, width, height, path_count) : 0);
 }
 
-void DirectStage::record(Recorder& rec, const RayStage& rays, const Input& in) const
+void DirectStage::followLights(Recorder& rec)
+{
+    if (table_version_ == scene_.lightTableVersion())
+        return;
+    table_version_ = scene_.lightTableVersion();
+    lights_ = groupLights(scene_.lights(), clusters_of_);
+    if (lights_.picks.empty())
+        return;
+    rec.write(picks_, 0, std::as_bytes(std::span(lights_.picks)));
+    rec.write(clusters_, 0, std::as_bytes(std::span(lights_.clusters)));
+    rec.write(densities_, 0, std::as_bytes(std::span(lights_.densities)));
+}
+
+void DirectStage::record(Recorder& rec, const RayStage& rays, const Input& in)
 {
     const auto scope = rec.scope("direct");
+    followLights(rec);
     const Buffer* tiles = &no_tiles_;
-    if (survey_)
+    if (const auto lamps = std::ranges::find(lights_.groups, LightKind::kLocal, &LightGroup::kind);
+        lamps != lights_.groups.end() && lamps->cluster_count > 1)
         tiles = &survey_->record(rec, rays,
                                  {.points = in.points,
                                   .point_count = in.point_count,
                                   .clusters = clusters_,
                                   .picks = picks_,
-                                  .first_cluster = lights_.groups.back().first_cluster,
+                                  .first_cluster = lamps->first_cluster,
+                                  .cluster_count = lamps->cluster_count,
                                   .first_sample = in.first_sample,
                                   .seed = in.seed + kSurveySeed});
     for (uint32_t i = 0; i < in.light_sample_count; ++i)

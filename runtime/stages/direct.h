@@ -26,15 +26,19 @@ public:
         uint32_t first_sample;
         uint32_t seed;
     };
-    void record(Recorder& rec, const RayStage& rays, const Input& in) const;
-    bool isNoisy() const { return is_noisy_; } // otherwise direct light is exact in every frame
+    void record(Recorder& rec, const RayStage& rays, const Input& in);
+    bool isNoisy() const { return is_noisy_; } // otherwise direct light is exact in every frame, whatever lights change
 
 private:
+    void followLights(Recorder& rec);
     /// @param tiles gpu::TileLights[]
     void recordSample(Recorder& rec, const RayStage& rays, const Input& in, uint32_t light_sample,
                       const Buffer& tiles) const;
 
+    const SceneGpu& scene_;
+    std::vector<uint32_t> clusters_of_; // by light
     LightGroups lights_;
+    std::optional<uint64_t> table_version_; // that they were made of
     uint32_t width_, height_;
     Kernel sample_, emitted_;
     RayQueue emitter_queue_;

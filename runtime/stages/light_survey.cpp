@@ -9,35 +9,35 @@ uint32_t tileCount(uint32_t width, uint32_t height, uint32_t path_count)
 }
 } // namespace
 
-LightSurvey::LightSurvey(const Device& device, const SceneGpu& scene, uint32_t cluster_count, uint32_t width,
+LightSurvey::LightSurvey(const Device& device, const SceneGpu& scene, uint32_t most_clusters, uint32_t width,
                          uint32_t height, uint32_t path_count, const Scratch& scratch)
-    : cluster_count_(cluster_count), width_(width), height_(height), tile_count_(tileCount(width, height, path_count)),
+    : width_(width), height_(height), tile_count_(tileCount(width, height, path_count)),
       survey_(device.kernel("direct/survey", scene.constants())), tally_(device.kernel("direct/tally")),
       queue_size_(device.array<gpu::QueueSize>("direct.survey_size", 1)),
       shadow_rays_(device.array<gpu::ShadowRay>("direct.survey_rays",
-                                                uint64_t(tile_count_) * cluster_count * gpu::kSurveyRays, scratch)),
+                                                uint64_t(tile_count_) * most_clusters * gpu::kSurveyRays, scratch)),
       arrived_(device.array<gpu::vec3>("direct.survey_arrived",
-                                       uint64_t(tile_count_) * cluster_count * gpu::kSurveyRays, scratch)),
+                                       uint64_t(tile_count_) * most_clusters * gpu::kSurveyRays, scratch)),
       tiles_(device.array<gpu::TileLights>("direct.tiles", tile_count_, scratch))
 {
 }
 
-uint64_t LightSurvey::scratchBytes(uint32_t cluster_count, uint32_t width, uint32_t height, uint32_t path_count)
+uint64_t LightSurvey::scratchBytes(uint32_t most_clusters, uint32_t width, uint32_t height, uint32_t path_count)
 {
     return uint64_t(tileCount(width, height, path_count)) *
-           (cluster_count * gpu::kSurveyRays * (sizeof(gpu::ShadowRay) + sizeof(gpu::vec3)) + sizeof(gpu::TileLights));
+           (most_clusters * gpu::kSurveyRays * (sizeof(gpu::ShadowRay) + sizeof(gpu::vec3)) + sizeof(gpu::TileLights));
 }
 
 const Buffer& LightSurvey::record(Recorder& rec, const RayStage& rays, const Input& in) const
 {
     rays.reset(rec, queue_size_);
-    rec.run(survey_, tile_count_ * cluster_count_ * gpu::kSurveyRays,
+    rec.run(survey_, tile_count_ * in.cluster_count * gpu::kSurveyRays,
             gpu::SurveyParams{.point_count = in.point_count,
                               .pixel_count = width_ * height_,
                               .width = width_,
                               .tile_count = tile_count_,
                               .first_cluster = in.first_cluster,
-                              .cluster_count = cluster_count_,
+                              .cluster_count = in.cluster_count,
                               .first_sample = in.first_sample,
                               .seed = in.seed},
             {{"Points", in.points},
@@ -48,7 +48,7 @@ const Buffer& LightSurvey::record(Recorder& rec, const RayStage& rays, const Inp
              {"Arrived", arrived_}});
     rays.close(rec, queue_size_);
     rays.visible(rec, queue_size_, shadow_rays_, arrived_);
-    rec.run(tally_, tile_count_, gpu::TallyParams{.tile_count = tile_count_, .cluster_count = cluster_count_},
+    rec.run(tally_, tile_count_, gpu::TallyParams{.tile_count = tile_count_, .cluster_count = in.cluster_count},
             {{"Arrived", arrived_}, {"Tiles", tiles_}});
     return tiles_;
 }

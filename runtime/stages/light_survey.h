@@ -1,17 +1,18 @@
 // Which clusters of lamps each part of the picture sees, told by a few shadow rays from every tile to every cluster.
 #pragma once
 #include "runtime/light_groups.h"
+#include "runtime/scene_gpu.h"
 #include "runtime/stages/rays.h"
 #include "shaders/direct/survey.h"
 
 class LightSurvey
 {
 public:
-    /// @param path_count shading points of a pixel, at most
-    LightSurvey(const Device& device, const SceneGpu& scene, uint32_t cluster_count, uint32_t width, uint32_t height,
+    /// @param most_clusters that a record() has, @param path_count shading points of a pixel, at most
+    LightSurvey(const Device& device, const SceneGpu& scene, uint32_t most_clusters, uint32_t width, uint32_t height,
                 uint32_t path_count, const Scratch& scratch);
     /// Scratch memory that it takes, bytes.
-    static uint64_t scratchBytes(uint32_t cluster_count, uint32_t width, uint32_t height, uint32_t path_count);
+    static uint64_t scratchBytes(uint32_t most_clusters, uint32_t width, uint32_t height, uint32_t path_count);
 
     struct Input
     {
@@ -19,7 +20,7 @@ public:
         uint32_t point_count;
         const Buffer& clusters; // gpu::LightCluster[]
         const Buffer& picks;    // gpu::LightPick[]
-        uint32_t first_cluster;
+        uint32_t first_cluster, cluster_count;
         uint32_t first_sample;
         uint32_t seed;
     };
@@ -27,7 +28,7 @@ public:
     const Buffer& record(Recorder& rec, const RayStage& rays, const Input& in) const;
 
 private:
-    uint32_t cluster_count_, width_, height_, tile_count_;
+    uint32_t width_, height_, tile_count_;
     Kernel survey_, tally_;
     Buffer queue_size_, shadow_rays_, arrived_, tiles_;
 };
