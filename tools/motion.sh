@@ -7,7 +7,8 @@
 #     --frames N         measured; default 60
 #     --spp N            samples a pixel of the references; default 256
 #     --size WxH         of all pictures; default 320x180
-#     --mode NAME        gi, direct or reference, which is path tracing at one sample a pixel and frame; default gi
+#     --mode NAME        gi, direct or reference, which is path tracing at one sample a pixel and frame, remembered, filtered and
+#                        anti-aliased as mode gi is; default gi
 #     --no-ghost         leaves the last columns out, and half of the time
 #     --dump             keeps each frame, its reference and its FLIP map below OUTDIR/motion, and a contact sheet of
 #                        frames above their references

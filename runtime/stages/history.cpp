@@ -19,7 +19,7 @@ HistoryStage::HistoryStage(const Device& device, uint32_t width, uint32_t height
     : tile_count_(tileCount(width, height)), compare_(device.kernel("history/compare")),
       reconcile_(device.kernel("history/reconcile")), blend_(device.kernel("history/blend")),
       compared_(device.texelArray<gpu::PixelPairs>("history.compared", width * height, scratch)),
-      tiles_(device.array<gpu::TilePairs>("history.tiles", tile_count_, scratch)),
+      tiles_(device.array<gpu::TilePairs>("history.tiles", tile_count_)),
       pixels_{device.texelArray<gpu::PixelHistory>("history.pixels_a", width * height),
               device.texelArray<gpu::PixelHistory>("history.pixels_b", width * height)}
 {

@@ -74,22 +74,23 @@ void follow(inout Memory past, inout Change change, Pairs pairs, float single, f
 }
 
 /// Variance of a pixel of one frame: what is left between the frame and the past times the factor between their means, or what the
-/// past's own frames say, as far as there is as much light as before.
-float singleVariance(Pairs pairs, Memory past)
+/// past's own frames say. Samples that pixels share show up in every frame, so that less light has less noise; of a pixel's own rays
+/// few may find a bright light, and frames in which none does have to be told from darkness.
+float singleVariance(Pairs pairs, Memory past, float shared_)
 {
     float count = max(pairs.count, 1.0), square_ = dot(pairs.past, pairs.past) / square(count);
     float factor = length(pairs.fresh) / max(length(pairs.past), 1e-30);
     vec3 rest = (pairs.fresh - factor * pairs.past) / count; // of another colour
     float around = dot(pairs.products, vec3(1.0, -2.0 * factor, square(factor))) / count - dot(rest, rest);
     float noise = past.frames < float(kKnownFrames) ? max(past.spread - 1.0, square(kLikelyNoise)) : past.spread - 1.0;
-    return max(around, square_ * noise * min(factor, 1.0));
+    return max(around, square_ * noise * (shared_ > 0.0 ? min(factor, 1.0) : 1.0));
 }
 
 void reconcileMemory(inout Memory past, Pairs far, Pairs wide, Pairs near, float shared_)
 {
     Change change = Change(clamp(vec3(1.0), params.least, params.most), vec3(0.0)); // so much is sure
     past.light *= change.gain;
-    float single = singleVariance(wide, past);
+    float single = singleVariance(wide, past, shared_);
     follow(past, change, far, single, shared_ * kSharedFar, kChance);
     follow(past, change, wide, single, shared_, kChance);
     follow(past, change, near, single, shared_, kNearChance);

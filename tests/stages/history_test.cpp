@@ -296,6 +296,26 @@ TEST_F(ChangedLight, LargeChangeIsFollowedAtOnce)
     EXPECT_LT(deviation, 2 * kNoise / 2) << "of a single frame the half";
 }
 
+/// Rays that seldom find a bright light: once it is known how seldom, frames in which they do not are no darkness.
+TEST_F(ChangedLight, RareBrightSamplesKeepTheirMean)
+{
+    constexpr uint32_t kOneIn = 32, kFrames = 40;
+    const auto sparks = [&]
+    {
+        std::vector<gpu::vec3> light(kPixels);
+        for (gpu::vec3& pixel : light)
+            if (random_.below(kOneIn) == 0)
+                pixel = {kOneIn, kOneIn, kOneIn};
+        return light;
+    };
+    for (uint32_t t = 0; t < kFrames; ++t)
+        show(camera_, sparks(), std::nullopt, gpu::kMostHistoryFrames);
+    for (uint32_t t = 0; t < 4; ++t)
+        show(camera_, sparks(), LightRange::anything(), gpu::kMostHistoryFrames);
+    // Five standard errors of the mean over the pixels, of as much as a third of the frames.
+    EXPECT_NEAR(shown().first, 1, 5 * std::sqrt((kOneIn - 1.0) / (kFrames / 3.0 * kPixels)));
+}
+
 TEST_F(ChangedLight, EvenLightIsWhatItIsNow)
 {
     for (int t = 0; t < 6; ++t)

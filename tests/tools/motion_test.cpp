@@ -17,10 +17,12 @@ protected:
     }
     std::string in(const std::string& name) const { return fmt::format("'{}'", (folder_ / name).string()); }
 
-    /// Path tracing at one sample a pixel against path tracing at two.
+    /// Path tracing at one sample a pixel, of which nothing is remembered, against path tracing at two.
     ProgramRun measure(const std::string& more) const
     {
-        return runProgram(LUMICUT_BENCH, fmt::format("motion {} --size 24x16 --spp 2 --mode reference --cache {} {}",
+        return runProgram(LUMICUT_BENCH, fmt::format("motion {} --size 24x16 --spp 2 --mode reference --cache {} --set "
+                                                     "history.frames=0 --set antialias.frames=0 --set "
+                                                     "denoise.passes=0 {}",
                                                      in("cornell.lumi"), in("kept"), more));
     }
     size_t keptCount() const
