@@ -55,12 +55,13 @@ TEST(LightGroups, PickEachLightByItsShareOfTheGroup)
 
 TEST(LightGroups, ALonePunctualLightHasOnePlace)
 {
-    const auto group = [](uint32_t kind) { return groupLights(std::vector{light(kind, 1)}).groups.at(0); };
+    const auto group = [](uint32_t kind)
+    { return groupLights(std::vector{light(kind, 1)}, std::vector<uint32_t>(1)).groups.at(0); };
     EXPECT_TRUE(group(gpu::kLightPoint).one_place);
     EXPECT_TRUE(group(gpu::kLightDirectional).one_place);
     EXPECT_FALSE(group(gpu::kLightTriangle).one_place);
     EXPECT_FALSE(group(gpu::kLightEnvironment).one_place);
-    EXPECT_TRUE(groupLights({}).groups.empty());
+    EXPECT_TRUE(groupLights({}, {}).groups.empty());
 }
 
 class DirectLight : public ClosedForm
