@@ -1,4 +1,5 @@
 #version 460
+#extension GL_EXT_control_flow_attributes : require
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "shaders/lib/light_pair.glsl"
@@ -13,19 +14,20 @@ layout(local_size_x = kRaysGroupSize) in;
 layout(push_constant, scalar) uniform Params { HistoryParams params; };
 
 layout(set = 1, binding = 0, scalar) readonly buffer Motions { Motion motions[]; };
-layout(set = 1, binding = 1, scalar) readonly buffer Guides { SurfaceGuide guides[]; };
+layout(set = 1, binding = 1) uniform usamplerBuffer Guides;
 layout(set = 1, binding = 2) uniform usamplerBuffer OldGuides;
 layout(set = 1, binding = 3) uniform usamplerBuffer OldHistory;
 layout(set = 1, binding = 4, scalar) writeonly buffer NewHistory { PixelHistory history[]; };
 layout(set = 1, binding = 5, scalar) buffer DirectSignals { uvec4 direct_signals[]; };
 layout(set = 1, binding = 6, scalar) buffer GlossySignals { uvec4 glossy_signals[]; };
-layout(set = 1, binding = 7, scalar) readonly buffer DiffusePoints { DiffusePoint diffuse_points[]; };
+layout(set = 1, binding = 7) uniform usamplerBuffer DiffusePoints;
 layout(set = 1, binding = 8, scalar) buffer Indirect { vec3 indirect[]; };
 layout(set = 1, binding = 9, scalar) buffer Caustics { vec3 caustics[]; };
 layout(set = 1, binding = 10) uniform usamplerBuffer Compared; // PixelPairs, where light has changed
 layout(constant_id = 0) const uint kLightChanged = 0u;
 layout(set = 1, binding = 11, scalar) readonly buffer Displacements { vec3 displacements[]; };
 
+#include "shaders/lib/diffuse_point.glsl"
 #include "shaders/lib/recall.glsl"
 #include "shaders/lib/reconcile.glsl"
 
@@ -80,7 +82,7 @@ void main()
         reconcile(past, pixel);
     float most = float(params.most_frames);
     uint random = hash(params.seed, pixel);
-    vec3 reflectance = max(diffuse_points[pixel].reflectance, vec3(kLeastReflectance));
+    vec3 reflectance = max(loadDiffusePoint(pixel).reflectance, vec3(kLeastReflectance));
     float lobe = unpackSignal(glossy_signals[pixel]).lobe;
     history[pixel] = PixelHistory(
         packMemory(rememberSignal(direct_signals[pixel], past.direct, most), random),

@@ -96,7 +96,7 @@ void reconcile(inout Past past, uint pixel)
 {
     ivec2 size = ivec2(params.width, params.point_count / params.width);
     ivec2 here = ivec2(pixel % params.width, pixel / params.width);
-    SurfaceGuide guide = guides[pixel];
+    SurfaceGuide guide = loadGuide(pixel);
     vec3 normal = octahedralToUnit(unpackSnorm4x8(guide.normals).xy);
     float footprint = footprintAt(motions[pixel]);
     Surroundings far = Surroundings(kNoPairs, kNoPairs, kNoPairs, kNoPairs), wide = far, near = far;
@@ -107,7 +107,7 @@ void reconcile(inout Past past, uint pixel)
         if (twice || any(lessThan(place, ivec2(0))) || any(greaterThanEqual(place, size)))
             continue;
         int other = place.y * size.x + place.x;
-        SurfaceGuide g = guides[other];
+        SurfaceGuide g = loadGuide(other);
         if (!sameSurface(guide, normal, uvec4(floatBitsToUint(g.position), g.normals), footprint))
             continue;
         if (k >= kNearPlaces + kWidePlaces)
