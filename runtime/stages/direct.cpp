@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace
 {
@@ -26,14 +27,37 @@ uint32_t countOf(std::span<const uint32_t> clusters)
 }
 } // namespace
 
+EmitterBox emitterBox(const SceneGpu& scene)
+{
+    constexpr float kEverywhere = 1e18f; // metres; differences and their products with 1 / a direction stay finite
+    EmitterBox box{.low = {-kEverywhere, -kEverywhere, -kEverywhere}, .high = {kEverywhere, kEverywhere, kEverywhere}};
+    if (scene.hasFeature(gpu::kFeatureEnvironment) || scene.canMove())
+        return box;
+    std::swap(box.low, box.high); // empty
+    for (const gpu::Light& light : scene.emitters().lights)
+        if (light.kind == gpu::kLightTriangle || light.kind == gpu::kLightTriangleTwoSided)
+            for (const gpu::vec3& p : {light.p0, light.p1, light.p2})
+            {
+                box.low = {std::min(box.low.x, p.x), std::min(box.low.y, p.y), std::min(box.low.z, p.z)};
+                box.high = {std::max(box.high.x, p.x), std::max(box.high.y, p.y), std::max(box.high.z, p.z)};
+            }
+    // Wider by what rounding may do to a ray that grazes it.
+    const auto magnitude = [](float a, float b) { return std::max(std::abs(a), std::abs(b)); };
+    const float slack = 1e-4f * std::max({magnitude(box.low.x, box.high.x), magnitude(box.low.y, box.high.y),
+                                          magnitude(box.low.z, box.high.z)});
+    box.low = {box.low.x - slack, box.low.y - slack, box.low.z - slack};
+    box.high = {box.high.x + slack, box.high.y + slack, box.high.z + slack};
+    return box;
+}
+
 DirectStage::DirectStage(const Device& device, const SceneGpu& scene, uint32_t width, uint32_t height,
                          uint32_t path_count, const Scratch& scratch)
     : scene_(scene), clusters_of_(clusterLights(scene.lights())), width_(width), height_(height),
-      sample_(device.kernel("direct/sample", scene.constants())),
+      emitters_(emitterBox(scene)), sample_(device.kernel("direct/sample", scene.constants())),
       emitted_(device.kernel("direct/emitted", scene.constants())),
       emitter_queue_(device, "direct.emitter_queue", width * height * path_count, scratch),
       shadow_size_(device.array<gpu::QueueSize>("direct.shadow_size", 1)),
-      shadow_rays_(device.array<gpu::ShadowRay>("direct.shadow_rays", width * height * path_count, scratch)),
+      shadow_rays_(device.texelArray<gpu::ShadowRay>("direct.shadow_rays", width * height * path_count, scratch)),
       emitter_rays_(device.array<gpu::EmitterRay>("direct.emitter_rays", width * height * path_count, scratch)),
       hits_(device.texelArray<gpu::Hit>("direct.hits", width * height * path_count, scratch)),
       clusters_(device.array<gpu::LightCluster>("direct.clusters", countOf(clusters_of_) + 2)),
@@ -45,7 +69,8 @@ DirectStage::DirectStage(const Device& device, const SceneGpu& scene, uint32_t w
     const uint32_t clusters = countOf(clusters_of_);
     if (clusters > 1)
         survey_.emplace(device, scene, clusters, width, height, path_count, scratch);
-    rest_rays_ = device.array<gpu::ShadowRay>("direct.rest_rays", survey_ ? width * height * path_count : 1, scratch);
+    rest_rays_ =
+        device.texelArray<gpu::ShadowRay>("direct.rest_rays", survey_ ? width * height * path_count : 1, scratch);
     no_tiles_ = device.array<gpu::TileLights>("direct.no_tiles", 1);
 }
 
@@ -112,7 +137,9 @@ void DirectStage::recordSample(Recorder& rec, const RayStage& rays, const Input&
                                        .candidate_count = group.one_place ? 1 : in.candidate_count,
                                        .traces_bsdf_samples = last && has_area_lights_,
                                        .pixel_count = width_ * height_,
-                                       .width = width_};
+                                       .width = width_,
+                                       .emitters_low = emitters_.low,
+                                       .emitters_high = emitters_.high};
         rays.reset(rec, shadow_size_);
         rays.reset(rec, rest_size_);
         rec.run(sample_, in.point_count, params,

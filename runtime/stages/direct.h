@@ -5,6 +5,13 @@
 
 #include <optional>
 
+/// Around all lights that a ray may find, metres.
+struct EmitterBox
+{
+    gpu::vec3 low, high;
+};
+EmitterBox emitterBox(const SceneGpu& scene);
+
 class DirectStage
 {
 public:
@@ -40,6 +47,7 @@ private:
     LightGroups lights_;
     std::optional<uint64_t> table_version_; // that they were made of
     uint32_t width_, height_;
+    EmitterBox emitters_;
     Kernel sample_, emitted_;
     RayQueue emitter_queue_;
     Buffer shadow_size_, shadow_rays_, emitter_rays_, hits_, clusters_, picks_, densities_;

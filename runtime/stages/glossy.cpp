@@ -66,7 +66,6 @@ void GlossyStage::recordHarmonics(Recorder& rec, const InterpolateStage::Sorted&
              {"Samples", samples.samples},
              {"Points", in.points},
              {"Radiance", in.radiance},
-             {"Order", samples.tree.order()},
              {"Harmonics", harmonics},
              {"Lobes", lobes_},
              {"Shares", shares_}});

@@ -14,8 +14,8 @@ LightSurvey::LightSurvey(const Device& device, const SceneGpu& scene, uint32_t m
     : width_(width), height_(height), tile_count_(tileCount(width, height, path_count)),
       survey_(device.kernel("direct/survey", scene.constants())), tally_(device.kernel("direct/tally")),
       queue_size_(device.array<gpu::QueueSize>("direct.survey_size", 1)),
-      shadow_rays_(device.array<gpu::ShadowRay>("direct.survey_rays",
-                                                uint64_t(tile_count_) * most_clusters * gpu::kSurveyRays, scratch)),
+      shadow_rays_(device.texelArray<gpu::ShadowRay>(
+          "direct.survey_rays", uint64_t(tile_count_) * most_clusters * gpu::kSurveyRays, scratch)),
       arrived_(device.array<gpu::vec3>("direct.survey_arrived",
                                        uint64_t(tile_count_) * most_clusters * gpu::kSurveyRays, scratch)),
       tiles_(device.array<gpu::TileLights>("direct.tiles", tile_count_, scratch))

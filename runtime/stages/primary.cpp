@@ -9,7 +9,7 @@ PrimaryStage::PrimaryStage(const Device& device, const SceneGpu& scene, uint32_t
       queue_(device, "primary.queue", max_pixels * (splits ? 2 : 1), scratch),
       next_queue_(device, "primary.next_queue", max_pixels * (splits ? 2 : 1), scratch),
       hits_(device.texelArray<gpu::Hit>("primary.hits", max_pixels * (splits ? 2 : 1), scratch)),
-      points_(device.array<gpu::ShadingPoint>("primary.points", max_pixels * (splits ? 2 : 1))),
+      points_(device.texelArray<gpu::ShadingPoint>("primary.points", max_pixels * (splits ? 2 : 1))),
       diffuse_points_(device.texelArray<gpu::DiffusePoint>("primary.diffuse_points", max_pixels * (splits ? 2 : 1)))
 {
 }

@@ -8,7 +8,7 @@ ReferenceStage::ReferenceStage(const Device& device, const SceneGpu& scene, uint
       states_(device.array<gpu::PathState>("reference.states", max_pixels * max_batch)),
       radiance_(device.array<gpu::vec3>("reference.radiance", max_pixels * max_batch)),
       shadow_size_(device.array<gpu::QueueSize>("reference.shadow_size", 1)),
-      shadow_rays_(device.array<gpu::ShadowRay>("reference.shadow_rays", max_pixels * max_batch))
+      shadow_rays_(device.texelArray<gpu::ShadowRay>("reference.shadow_rays", max_pixels * max_batch))
 {
 }
 

@@ -1,4 +1,5 @@
 #version 460
+#extension GL_EXT_control_flow_attributes : require
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "shaders/antialias/antialias.h"
@@ -20,7 +21,7 @@ layout(set = 1, binding = 5, scalar) writeonly buffer Counts { float counts[]; }
 
 const float kWithin = 1.25; // standard deviations of the surroundings: fewer cut off what is there, more let ghosts stay
 
-ivec2 size() { return ivec2(params.width, params.point_count / params.width); }
+ivec2 size() { return ivec2(params.width, quotient(params.point_count, params.width)); }
 uint pixelAt(ivec2 place)
 {
     place = clamp(place, ivec2(0), size() - 1);
@@ -43,8 +44,8 @@ vec3 lastPicture(vec2 at)
     weights[2] = t * (0.5 + t * (2.0 - 1.5 * t));
     weights[3] = t * t * (-0.5 + 0.5 * t);
     vec3 sum = vec3(0.0);
-    for (int y = 0; y < 4; ++y)
-        for (int x = 0; x < 4; ++x)
+    [[unroll]] for (int y = 0; y < 4; ++y)
+        [[unroll]] for (int x = 0; x < 4; ++x)
             sum += weights[x].x * weights[y].y * old_shown[pixelAt(corner + ivec2(x, y) - 1)];
     return max(sum, vec3(0.0));
 }
@@ -54,11 +55,12 @@ void main()
     uint pixel = gl_GlobalInvocationID.x;
     if (pixel >= params.point_count)
         return;
-    ivec2 here = ivec2(pixel % params.width, pixel / params.width);
+    uint row = quotient(pixel, params.width);
+    ivec2 here = ivec2(pixel - row * params.width, row);
     vec3 own = picture[pixel], mean = vec3(0.0), squares = vec3(0.0);
     float count = 0.0, nearest = kInfinity;
     vec2 from = motions[pixel].from;
-    for (int k = 0; k < 9; ++k)
+    [[unroll]] for (int k = 0; k < 9; ++k)
     {
         uint neighbour = pixelAt(here + ivec2(k % 3, k / 3) - 1);
         Motion motion = motions[neighbour];

@@ -37,5 +37,5 @@ void main()
     ray.origin += 1e-4 * hits[i].t * normal; // the hit point is not re-computed from the triangle here
     uint next = atomicAdd(next_queue.count, 1u);
     next_rays[next] = ray;
-    shadow_rays[next] = ShadowRay(ray, vec3(1.0));
+    shadow_rays[next] = ShadowRay(ray, vec3(1.0), 0.0);
 }

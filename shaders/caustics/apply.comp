@@ -12,16 +12,17 @@ layout(push_constant, scalar) uniform Params { CausticsParams params; };
 layout(set = 1, binding = 0, scalar) readonly buffer Size { QueueSize size; };
 layout(set = 1, binding = 1) uniform usamplerBuffer TreeNodes;
 layout(set = 1, binding = 2) uniform usamplerBuffer Photons;
-layout(set = 1, binding = 3, scalar) readonly buffer Points { ShadingPoint points[]; };
+layout(set = 1, binding = 3) uniform usamplerBuffer Points;
 layout(set = 1, binding = 4, scalar) buffer Radiance { vec3 radiance[]; };
+#include "shaders/lib/point.glsl"
 #include "shaders/lib/density.glsl"
 
 void main()
 {
     uint pixel = gl_GlobalInvocationID.x;
-    if (pixel >= params.point_count || points[pixel].slot == kNone)
+    if (pixel >= params.point_count || loadPoint(pixel).slot == kNone)
         return;
-    ShadingPoint point = points[pixel];
+    ShadingPoint point = loadPoint(pixel);
     PathVertex v = vertexAt(point);
     Surface s = v.surface;
     float cosine = max(0.0, v.wo.z);

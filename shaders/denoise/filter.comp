@@ -1,4 +1,5 @@
 #version 460
+#extension GL_EXT_control_flow_attributes : require
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "shaders/denoise/denoise.h"
@@ -81,8 +82,9 @@ void main()
     float bright = brightness(center), weights = 1.0, mean = bright, mean2 = bright * bright;
     float left = 1.0, parts2 = 0.0, variance = 0.0; // parts of the center's brightness and of others' that make up the result
     vec3 light = center.light;
-    ivec2 size = ivec2(params.width, params.point_count / params.width), at = ivec2(pixel % params.width, pixel / params.width);
-    for (int k = 0; k < 9; ++k)
+    uint row = quotient(pixel, params.width);
+    ivec2 size = ivec2(params.width, quotient(params.point_count, params.width)), at = ivec2(pixel - row * params.width, row);
+    [[unroll]] for (int k = 0; k < 9; ++k)
     {
         ivec2 offset = ivec2(k % 3, k / 3) - 1, place = at + offset * int(params.step_);
         if (offset == ivec2(0) || any(lessThan(place, ivec2(0))) || any(greaterThanEqual(place, size)))

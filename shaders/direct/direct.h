@@ -23,9 +23,11 @@ struct DirectParams
     uint candidate_count;     // light samples of which one gets the shadow ray
     uint traces_bsdf_samples; // 1: this dispatch also sends the BSDF-sampled rays
     uint pixel_count;
-    uint width; // of the picture, pixels
+    uint width;        // of the picture, pixels
+    vec3 emitters_low; // metres: what does not pass the box between them meets no emitter
+    vec3 emitters_high;
 };
-GPU_SIZE(DirectParams, 52);
+GPU_SIZE(DirectParams, 76);
 
 struct EmittedParams
 {

@@ -2,6 +2,8 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "shaders/direct/direct.h"
+#include "shaders/lib/bvh.glsl"
+#include "shaders/lib/tile.glsl"
 #include "shaders/lib/unshadowed.glsl"
 
 // Samples direct light at every shading point: a shadow ray to a light of the group, or one to clusters of lamps that are seen
@@ -13,7 +15,7 @@
 layout(local_size_x = kRaysGroupSize) in;
 layout(push_constant, scalar) uniform Params { DirectParams params; };
 
-layout(set = 1, binding = 0, scalar) readonly buffer Points { ShadingPoint points[]; };
+layout(set = 1, binding = 0) uniform usamplerBuffer Points;
 layout(set = 1, binding = 1, scalar) buffer ShadowQueue { QueueSize shadow_queue; };
 layout(set = 1, binding = 2, scalar) writeonly buffer ShadowRays { ShadowRay shadow_rays[]; };
 layout(set = 1, binding = 3, scalar) buffer EmitterQueue { QueueSize emitter_queue; };
@@ -26,6 +28,7 @@ layout(set = 1, binding = 9, scalar) buffer RestQueue { QueueSize rest_queue; };
 layout(set = 1, binding = 10, scalar) writeonly buffer RestRays { ShadowRay rest_rays[]; };
 
 #include "shaders/lib/light_cluster.glsl"
+#include "shaders/lib/point.glsl"
 
 const uint kSeen = 0u, kRest = 1u; // what a shadow ray is for
 
@@ -53,7 +56,7 @@ void sampleSet(uint set, uint candidate_count, PathVertex v, vec3 throughput, ui
     LightSample chosen = kNoLight;
     vec3 carried = vec3(0.0);
     float sum = 0.0, chosen_weight = 0.0, turn = toUnitFloat(hash(hash(path, index), params.light_seed + set));
-    for (uint k = 0u; k < candidate_count; ++k)
+    for (uint k = 0u;;)
     {
         uint cluster = 0u;
         float probability = 1.0, visible = 1.0;
@@ -67,23 +70,26 @@ void sampleSet(uint set, uint candidate_count, PathVertex v, vec3 throughput, ui
         LightSample light = sampleCluster(clusters[params.first_cluster + cluster], v.surface.position, nextLightDraws(s));
         vec3 candidate = throughput * unshadowed(v, light) / probability;
         float weight = luminance(candidate) * visible;
-        if (!(weight > 0.0))
-            continue;
-        sum += weight;
-        float kept = 1.0 - weight / sum; // with this probability the choice so far stays; one draw serves for all
-        if (draw < kept)
-            draw /= kept;
-        else
+        if (weight > 0.0)
         {
-            draw = (draw - kept) / (1.0 - kept);
-            chosen = light;
-            carried = candidate;
-            chosen_weight = weight;
+            sum += weight;
+            float kept = 1.0 - weight / sum; // with this probability the choice so far stays; one draw serves for all
+            if (draw < kept)
+                draw /= kept;
+            else
+            {
+                draw = (draw - kept) / (1.0 - kept);
+                chosen = light;
+                carried = candidate;
+                chosen_weight = weight;
+            }
         }
+        if (++k >= candidate_count)
+            break;
     }
     if (sum > 0.0)
     {
-        ShadowRay ray = ShadowRay(shadowRay(v.surface, chosen, path), carried * (sum / (chosen_weight * float(candidate_count))));
+        ShadowRay ray = ShadowRay(shadowRay(v.surface, chosen, path), carried * (sum / (chosen_weight * float(candidate_count))), 0.0);
         if (set == kSeen)
             shadow_rays[atomicAdd(shadow_queue.count, 1u)] = ray;
         else
@@ -91,12 +97,23 @@ void sampleSet(uint set, uint candidate_count, PathVertex v, vec3 throughput, ui
     }
 }
 
+/// Whether a ray passes the box around all that emits.
+bool mayMeetEmitters(Ray ray)
+{
+    vec3 inverse = safeInverse(ray.direction);
+    vec3 a = (params.emitters_low - ray.origin) * inverse, b = (params.emitters_high - ray.origin) * inverse;
+    vec3 enter = min(a, b), leave = max(a, b);
+    return max(max(enter.x, enter.y), max(enter.z, 0.0)) <= min(leave.x, min(leave.y, leave.z));
+}
+
 void main()
 {
-    uint path = gl_GlobalInvocationID.x;
-    if (path >= params.point_count || points[path].slot == kNone)
+    uint path = tiledPixel(gl_GlobalInvocationID.x, params.width, params.point_count);
+    if (path >= params.point_count)
         return;
-    ShadingPoint point = points[path];
+    ShadingPoint point = loadPoint(path);
+    if (point.slot == kNone)
+        return;
     PathVertex v = vertexAt(point);
     Surface s = v.surface;
     if (!hasDensity(v.bsdf))
@@ -127,7 +144,10 @@ void main()
     vec3 wi = v.frame * next.wi;
     if (next.pdf == 0.0 || next.weight == vec3(0.0) || !sidesAgree(s, wi, next.wi.z))
         return;
+    Ray ray = leavingRay(s, wi, kInfinity, path);
+    if (!mayMeetEmitters(ray))
+        return;
     uint slot = atomicAdd(emitter_queue.count, 1u);
-    rays[slot] = leavingRay(s, wi, kInfinity, path);
+    rays[slot] = ray;
     emitter_rays[slot] = EmitterRay(throughput * next.weight, next.pdf);
 }

@@ -49,7 +49,7 @@ void main()
             result.y = luminance(point.throughput * unshadowed(v, light));
             if (result.y > 0.0 && !isinf(result.y))
                 shadow_rays[atomicAdd(shadow_queue.count, 1u)] =
-                    ShadowRay(shadowRay(v.surface, light, thread), vec3(result.y, 0.0, 0.0));
+                    ShadowRay(shadowRay(v.surface, light, thread), vec3(result.y, 0.0, 0.0), 0.0);
             else
                 result.y = 0.0;
         }

@@ -9,9 +9,10 @@
 layout(local_size_x = kRaysGroupSize) in;
 layout(push_constant, scalar) uniform Params { PixelGatherParams params; };
 
-layout(set = 1, binding = 0, scalar) readonly buffer Points { ShadingPoint points[]; };
+layout(set = 1, binding = 0) uniform usamplerBuffer Points;
 layout(set = 1, binding = 1, scalar) writeonly buffer Rays { Ray rays[]; };
 layout(set = 1, binding = 2, scalar) writeonly buffer States { GatherState states[]; };
+#include "shaders/lib/point.glsl"
 
 void main()
 {
@@ -21,7 +22,7 @@ void main()
     uint first = i * params.ray_count, pixel = params.first_point + i;
     for (uint k = 0u; k < params.ray_count; ++k) // where there is nothing to gather for they end at once
         rays[first + k] = Ray(vec3(0.0), 0.0, vec3(0.0, 0.0, 1.0), first + k);
-    ShadingPoint point = points[pixel];
+    ShadingPoint point = loadPoint(pixel);
     if (point.slot == kNone)
         return;
     PathVertex v = vertexAt(point);

@@ -3,6 +3,7 @@
 #extension GL_EXT_scalar_block_layout : require
 #include "shaders/glossy/glossy.h"
 #include "shaders/lib/path.glsl"
+#include "shaders/lib/tile.glsl"
 
 // A ray from every shading point with a rough specular lobe, sampled by that lobe. Faint reflections are subject to Russian
 // roulette. One thread per pixel; one ray a pixel at most.
@@ -10,21 +11,24 @@
 layout(local_size_x = kRaysGroupSize) in;
 layout(push_constant, scalar) uniform Params { GlossyParams params; };
 
-layout(set = 1, binding = 0, scalar) readonly buffer Points { ShadingPoint points[]; };
+layout(set = 1, binding = 0) uniform usamplerBuffer Points;
 layout(set = 1, binding = 1, scalar) buffer Queue { QueueSize queue; };
 layout(set = 1, binding = 2, scalar) writeonly buffer Rays { Ray rays[]; };
 layout(set = 1, binding = 3, scalar) writeonly buffer States { GatherState states[]; };
 layout(set = 1, binding = 4, scalar) readonly buffer Shares { float shares[]; }; // of the light that is there already
+#include "shaders/lib/point.glsl"
 
 void main()
 {
-    uint path = gl_GlobalInvocationID.x;
-    if (path >= params.point_count || points[path].slot == kNone)
+    uint path = tiledPixel(gl_GlobalInvocationID.x, params.width, params.point_count);
+    if (path >= params.point_count)
+        return;
+    ShadingPoint point = loadPoint(path);
+    if (point.slot == kNone)
         return;
     float missing = params.shared_ != 0u ? 1.0 - shares[path] : 1.0;
     if (missing <= 0.0)
         return;
-    ShadingPoint point = points[path];
     PathVertex v = vertexAt(point);
     if (!hasGlossyLobe(v.bsdf))
         return;

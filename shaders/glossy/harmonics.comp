@@ -15,12 +15,12 @@ layout(push_constant, scalar) uniform Params { GlossyParams params; };
 layout(set = 1, binding = 0, scalar) readonly buffer Size { QueueSize size; };
 layout(set = 1, binding = 1) uniform usamplerBuffer TreeNodes;
 layout(set = 1, binding = 2) uniform usamplerBuffer Samples;
-layout(set = 1, binding = 3, scalar) readonly buffer Points { ShadingPoint points[]; };
+layout(set = 1, binding = 3) uniform usamplerBuffer Points;
 layout(set = 1, binding = 4, scalar) buffer Radiance { vec3 radiance[]; };
-layout(set = 1, binding = 5, scalar) readonly buffer Order { uint order[]; }; // samples as they were gathered
 layout(set = 1, binding = 6) uniform usamplerBuffer Harmonics; // SampleHarmonics, a texel a channel
 layout(set = 1, binding = 7, scalar) readonly buffer Lobes { GlossyLobe lobes[]; };
 layout(set = 1, binding = 8, scalar) writeonly buffer Shares { float shares[]; }; // of glossy light that needs no ray
+#include "shaders/lib/point.glsl"
 #include "shaders/lib/sample.glsl"
 #include "shaders/lib/tree.glsl"
 
@@ -58,19 +58,26 @@ bool interpolatedLight(vec3 x, vec3 n, Reflection r, out vec3 light)
 {
     light = vec3(0.0);
     float weights = 0.0;
-    uint first, end;
+    uint i, end;
     beginRanges(size.count);
-    while (nextRange(x, 0.0, first, end))
-        for (uint i = first; i < end; ++i)
-        {
-            SampleTexels s = loadSample(i);
-            float weight = sampleWeight(s, x, n);
-            if (weight > 0.0)
+    for (;;)
+    {
+        if (nextRange(x, 0.0, i, end))
+            for (;;)
             {
-                light += weight * incidentLight(s.irradiance, order[i], r);
-                weights += weight * evenLight(r, s.normal);
+                SampleTexels s = loadSample(i);
+                float weight = sampleWeight(s, x, n);
+                if (weight > 0.0)
+                {
+                    light += weight * incidentLight(s.irradiance, s.slot, r);
+                    weights += weight * evenLight(r, s.normal);
+                }
+                if (++i == end)
+                    break;
             }
-        }
+        if (!hasRanges())
+            break;
+    }
     light /= max(weights, 1e-20);
     return weights > 0.0;
 }
@@ -78,10 +85,12 @@ bool interpolatedLight(vec3 x, vec3 n, Reflection r, out vec3 light)
 void main()
 {
     uint pixel = tiledPixel(gl_GlobalInvocationID.x, params.width, params.point_count);
-    if (pixel >= params.point_count || points[pixel].slot == kNone)
+    if (pixel >= params.point_count)
+        return;
+    ShadingPoint point = loadPoint(pixel);
+    if (point.slot == kNone)
         return;
     shares[pixel] = 0.0;
-    ShadingPoint point = points[pixel];
     PathVertex v = vertexAt(point);
     Surface s = v.surface;
     Bsdf b = v.bsdf;

@@ -1,4 +1,5 @@
 #version 460
+#extension GL_EXT_control_flow_attributes : require
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "shaders/lib/history.glsl"
@@ -12,17 +13,18 @@ layout(local_size_x = kRaysGroupSize) in;
 layout(push_constant, scalar) uniform Params { HistoryParams params; };
 
 layout(set = 1, binding = 0, scalar) readonly buffer Motions { Motion motions[]; };
-layout(set = 1, binding = 1, scalar) readonly buffer Guides { SurfaceGuide guides[]; };
+layout(set = 1, binding = 1) uniform usamplerBuffer Guides;
 layout(set = 1, binding = 2) uniform usamplerBuffer OldGuides;
 layout(set = 1, binding = 3) uniform usamplerBuffer OldHistory;
 layout(set = 1, binding = 4, scalar) writeonly buffer NewHistory { PixelHistory history[]; };
 layout(set = 1, binding = 5, scalar) buffer DirectSignals { uvec4 direct_signals[]; };
 layout(set = 1, binding = 6, scalar) buffer GlossySignals { uvec4 glossy_signals[]; };
-layout(set = 1, binding = 7, scalar) readonly buffer DiffusePoints { DiffusePoint diffuse_points[]; };
+layout(set = 1, binding = 7) uniform usamplerBuffer DiffusePoints;
 layout(set = 1, binding = 8, scalar) buffer Indirect { vec3 indirect[]; };
 layout(set = 1, binding = 9, scalar) buffer Caustics { vec3 caustics[]; };
 layout(set = 1, binding = 10, scalar) readonly buffer Displacements { vec3 displacements[]; };
 
+#include "shaders/lib/diffuse_point.glsl"
 #include "shaders/lib/remember.glsl"
 
 void main()

@@ -1,4 +1,5 @@
 #version 460
+#extension GL_EXT_control_flow_attributes : require
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "shaders/lib/light_pair.glsl"
@@ -11,18 +12,19 @@ layout(local_size_x = kHistoryTileSize) in;
 layout(push_constant, scalar) uniform Params { HistoryParams params; };
 
 layout(set = 1, binding = 0, scalar) readonly buffer Motions { Motion motions[]; };
-layout(set = 1, binding = 1, scalar) readonly buffer Guides { SurfaceGuide guides[]; };
+layout(set = 1, binding = 1) uniform usamplerBuffer Guides;
 layout(set = 1, binding = 2) uniform usamplerBuffer OldGuides;
 layout(set = 1, binding = 3) uniform usamplerBuffer OldHistory;
-layout(set = 1, binding = 4, scalar) readonly buffer DirectSignals { uvec4 direct_signals[]; };
-layout(set = 1, binding = 5, scalar) readonly buffer GlossySignals { uvec4 glossy_signals[]; };
-layout(set = 1, binding = 6, scalar) readonly buffer DiffusePoints { DiffusePoint diffuse_points[]; };
+layout(set = 1, binding = 4) uniform usamplerBuffer DirectSignals;
+layout(set = 1, binding = 5) uniform usamplerBuffer GlossySignals;
+layout(set = 1, binding = 6) uniform usamplerBuffer DiffusePoints;
 layout(set = 1, binding = 7, scalar) readonly buffer Indirect { vec3 indirect[]; };
 layout(set = 1, binding = 8, scalar) readonly buffer Caustics { vec3 caustics[]; };
 layout(set = 1, binding = 9, scalar) writeonly buffer Compared { PixelPairs pairs[]; };
 layout(set = 1, binding = 10, scalar) readonly buffer Displacements { vec3 displacements[]; };
 layout(set = 1, binding = 11, scalar) writeonly buffer Tiles { TilePairs tiles[]; };
 
+#include "shaders/lib/diffuse_point.glsl"
 #include "shaders/lib/history_tile.glsl"
 #include "shaders/lib/recall.glsl"
 
@@ -42,13 +44,13 @@ LightPair pairOf(uvec4 bits, Memory past)
 bool comparePixel(uint pixel, uint thread)
 {
     Past past = recall(pixel);
-    vec3 reflectance = max(diffuse_points[pixel].reflectance, vec3(kLeastReflectance));
-    PixelPairs p = PixelPairs(pairOf(direct_signals[pixel], past.direct),
+    vec3 reflectance = max(loadDiffusePoint(pixel).reflectance, vec3(kLeastReflectance));
+    PixelPairs p = PixelPairs(pairOf(texelFetch(DirectSignals, int(pixel)), past.direct),
                               packPair(lightOver(indirect[pixel], reflectance, past.indirect), past.indirect),
-                              pairOf(glossy_signals[pixel], past.glossy),
+                              pairOf(texelFetch(GlossySignals, int(pixel)), past.glossy),
                               packPair(lightOver(caustics[pixel], reflectance, past.caustics), past.caustics));
     pairs[pixel] = p;
-    surfaces[thread] = guides[pixel];
+    surfaces[thread] = loadGuide(pixel);
     shown[thread] = LightPair[kTerms](p.direct, p.indirect, p.glossy, p.caustics);
     return motions[pixel].distance < kInfinity;
 }

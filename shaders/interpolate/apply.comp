@@ -67,24 +67,31 @@ void takeNearest(vec3 low, vec3 high)
     }
     if (missing == 0u)
         return;
-    uint first, end;
+    uint i, end;
     beginRanges(size.count);
-    while (nextRange(low, high, square(farthest / alpha), first, end))
-        for (uint i = first; i < end; ++i)
-        {
-            SampleTexels s = loadSample(i);
-            farthest = 0.0;
-            [[unroll]] for (uint k = 0u; k < kRun; ++k)
+    for (;;)
+    {
+        if (nextRange(low, high, square(farthest / alpha), i, end))
+            for (;;)
             {
-                float eps = geometricVariation(alpha, x[k], n[k], s.position, s.normal);
-                if (eps < best[k])
+                SampleTexels s = loadSample(i);
+                farthest = 0.0;
+                [[unroll]] for (uint k = 0u; k < kRun; ++k)
                 {
-                    best[k] = eps;
-                    sum[k] = vec4(s.irradiance, 1.0);
+                    float eps = geometricVariation(alpha, x[k], n[k], s.position, s.normal);
+                    if (eps < best[k])
+                    {
+                        best[k] = eps;
+                        sum[k] = vec4(s.irradiance, 1.0);
+                    }
+                    farthest = max(farthest, best[k]);
                 }
-                farthest = max(farthest, best[k]);
+                if (++i == end)
+                    break;
             }
-        }
+        if (!hasRanges())
+            break;
+    }
     uint unlit = 0u;
     [[unroll]] for (uint k = 0u; k < kRun; ++k)
         unlit += uint(sum[k].w == 0.0 && reflectance[k] != vec3(0.0));
@@ -100,15 +107,22 @@ void main()
     vec3 low, high;
     if (pixel >= params.point_count || !loadRun(pixel, low, high))
         return;
-    uint first, end;
+    uint i, end;
     beginRanges(size.count);
-    while (nextRange(low, high, 0.0, first, end))
-        for (uint i = first; i < end; ++i)
-        {
-            SampleTexels s = loadSample(i);
-            [[unroll]] for (uint k = 0u; k < kRun; ++k)
-                sum[k] += sampleWeight(s, x[k], n[k]) * vec4(s.irradiance, 1.0);
-        }
+    for (;;)
+    {
+        if (nextRange(low, high, 0.0, i, end))
+            for (;;)
+            {
+                SampleTexels s = loadSample(i);
+                [[unroll]] for (uint k = 0u; k < kRun; ++k)
+                    sum[k] += sampleWeight(s, x[k], n[k]) * vec4(s.irradiance, 1.0);
+                if (++i == end)
+                    break;
+            }
+        if (!hasRanges())
+            break;
+    }
     takeNearest(low, high);
     [[unroll]] for (uint k = 0u; k < kRun; ++k)
         if (sum[k].w > 0.0 && reflectance[k] != vec3(0.0))

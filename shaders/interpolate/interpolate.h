@@ -10,7 +10,7 @@ struct SampleTexels // a Sample as interpolation reads it, three texels
     vec3 position;  // metres
     float support2; // square metres: the support's square
     vec3 normal;
-    float harmonic_mean_distance; // metres
+    uint slot; // among the samples as they were gathered
     vec3 irradiance;
     float inverse_harmonic;
 };

@@ -18,6 +18,7 @@ void main()
     uint i = gl_GlobalInvocationID.x;
     if (i >= size.count)
         return;
-    Sample s = samples[order[i]];
-    sorted[i] = SampleTexels(s.position, square(s.support), unpackNormal(s.normal), s.harmonic_mean_distance, s.irradiance, 1.0 / s.harmonic_mean_distance);
+    uint slot = order[i];
+    Sample s = samples[slot];
+    sorted[i] = SampleTexels(s.position, square(s.support), unpackNormal(s.normal), slot, s.irradiance, 1.0 / s.harmonic_mean_distance);
 }

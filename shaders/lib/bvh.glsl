@@ -146,65 +146,86 @@ void swapIfFarther(inout float t0, inout uint c0, inout float t1, inout uint c1)
 
 uint leafEnd(uint child) { return (child & kLeafFirstMask) + ((child >> kLeafCountShift) & kLeafCountMask) + 1u; }
 
-// Children still to be visited: reference and entry distance. Module scope, so that functions share it without copies.
-uvec2 traversal_stack[kTraversalStackSize];
+// Loops here and in lib/trace.glsl test at their end. Software Vulkan takes no branch but the one back to a loop's begin:
+// threads that leave at the head of a loop cost its body once more, and every body is run once at least.
+
+// Children still to be visited, and their entry distances. Module scope, so that functions share them without copies.
+uint stacked_children[kTraversalStackSize];
+float stacked_entries[kTraversalStackSize]; // closest hits only
 uint traversal_depth;
 
-void push(uint child, float entry) { traversal_stack[traversal_depth++] = uvec2(child, floatBitsToUint(entry)); }
+void push(uint child, float entry)
+{
+    stacked_children[traversal_depth] = child;
+    stacked_entries[traversal_depth++] = entry;
+}
 
 /// The next child that is entered up to t_max, or kNone.
 uint popNearer(float t_max)
 {
-    while (traversal_depth > 0u)
-    {
-        uvec2 top = traversal_stack[--traversal_depth];
-        if (uintBitsToFloat(top.y) <= t_max)
-            return top.x;
-    }
-    return kNone;
+    uint child = kNone;
+    if (traversal_depth > 0u)
+        for (;;)
+        {
+            --traversal_depth;
+            if (stacked_entries[traversal_depth] <= t_max)
+                child = stacked_children[traversal_depth];
+            if (child != kNone || traversal_depth == 0u)
+                break;
+        }
+    return child;
 }
+
+/// The next child in no order, or kNone.
+uint popAny() { return traversal_depth > 0u ? stacked_children[--traversal_depth] : kNone; }
 
 /// Down from a child reference to the nearest leaf below it, or where the ray misses all of them to that of the next child.
 /// @return kNone: nothing is left
 uint nearestLeaf(uint current, BoxRay ray, float t_min, float t_max)
 {
-    while ((current & kLeafBit) == 0u)
-    {
-        vec4 t = hitBoxes(current, ray, t_min, t_max);
-        uvec4 child = nodeChildren(current);
-        swapIfFarther(t.x, child.x, t.y, child.y);
-        swapIfFarther(t.z, child.z, t.w, child.w);
-        swapIfFarther(t.x, child.x, t.z, child.z);
-        swapIfFarther(t.y, child.y, t.w, child.w);
-        swapIfFarther(t.y, child.y, t.z, child.z);
-        if (t.w < kInfinity)
-            push(child.w, t.w);
-        if (t.z < kInfinity)
-            push(child.z, t.z);
-        if (t.y < kInfinity)
-            push(child.y, t.y);
-        current = t.x < kInfinity ? child.x : popNearer(t_max);
-    }
+    if ((current & kLeafBit) == 0u)
+        for (;;)
+        {
+            vec4 t = hitBoxes(current, ray, t_min, t_max);
+            uvec4 child = nodeChildren(current);
+            swapIfFarther(t.x, child.x, t.y, child.y);
+            swapIfFarther(t.z, child.z, t.w, child.w);
+            swapIfFarther(t.x, child.x, t.z, child.z);
+            swapIfFarther(t.y, child.y, t.w, child.w);
+            swapIfFarther(t.y, child.y, t.z, child.z);
+            if (t.w < kInfinity)
+                push(child.w, t.w);
+            if (t.z < kInfinity)
+                push(child.z, t.z);
+            if (t.y < kInfinity)
+                push(child.y, t.y);
+            current = t.x < kInfinity ? child.x : popNearer(t_max);
+            if ((current & kLeafBit) != 0u)
+                break;
+        }
     return current;
 }
 
 /// The same in no order.
 uint anyLeaf(uint current, BoxRay ray, float t_max)
 {
-    while ((current & kLeafBit) == 0u)
-    {
-        vec4 t = hitBoxes(current, ray, 0.0, t_max);
-        uvec4 child = nodeChildren(current);
-        uint next = kNone;
-        for (uint i = 0u; i < kBvhWidth; ++i)
-            if (t[i] < kInfinity)
-            {
-                if (next != kNone)
-                    push(next, 0.0);
-                next = child[i];
-            }
-        current = next != kNone ? next : popNearer(t_max);
-    }
+    if ((current & kLeafBit) == 0u)
+        for (;;)
+        {
+            vec4 t = hitBoxes(current, ray, 0.0, t_max);
+            uvec4 child = nodeChildren(current);
+            uint next = kNone;
+            for (uint i = 0u; i < kBvhWidth; ++i)
+                if (t[i] < kInfinity)
+                {
+                    if (next != kNone)
+                        stacked_children[traversal_depth++] = next;
+                    next = child[i];
+                }
+            current = next != kNone ? next : popAny();
+            if ((current & kLeafBit) != 0u)
+                break;
+        }
     return current;
 }
 

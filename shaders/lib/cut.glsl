@@ -23,19 +23,26 @@ bool isWithinSupport(uint index, vec3 x)
 uint nearestCutNode(vec3 x, vec3 n, float radius2)
 {
     uint nearest = kNone;
-    uint first, end;
+    uint i, end;
     beginRanges(cut_size.count);
-    while (nextRange(x, radius2, first, end))
-        for (uint i = first; i < end; ++i)
-        {
-            vec3 normal = cutNormal(loadCutNode(i));
-            float distance2 = surfaceDistance2(loadCutNode(i).center - x, normal);
-            if (distance2 < radius2 && dot(n, normal) > 0.2)
+    for (;;)
+    {
+        if (nextRange(x, radius2, i, end))
+            for (;;)
             {
-                radius2 = distance2;
-                nearest = i;
+                vec3 normal = cutNormal(loadCutNode(i));
+                float distance2 = surfaceDistance2(loadCutNode(i).center - x, normal);
+                if (distance2 < radius2 && dot(n, normal) > 0.2)
+                {
+                    radius2 = distance2;
+                    nearest = i;
+                }
+                if (++i == end)
+                    break;
             }
-        }
+        if (!hasRanges())
+            break;
+    }
     return nearest;
 }
 

@@ -45,19 +45,27 @@ Incident cutLight(vec3 x, vec3 n, uint random)
     vec3 sum = vec3(0.0);
     Reservoir reservoir = Reservoir(random, 0.0, kNone);
     bool is_sure = true; // all are seen
-    uint first, end;
+    uint i, end;
     beginRanges(cut_size.count);
-    while (nextRange(x, 0.0, first, end))
-        for (uint i = first; i < end; ++i)
-        {
-            if (!isWithinSupport(i, x))
-                continue;
-            CutNode node = loadCutNode(i);
-            vec3 irradiance = cutWeight(node, x, n) * node.irradiance;
-            sum += irradiance;
-            is_sure = is_sure && (irradiance == vec3(0.0) || isSeenByAll(node));
-            offer(reservoir, luminance(irradiance), i);
-        }
+    for (;;)
+    {
+        if (nextRange(x, 0.0, i, end))
+            for (;;)
+            {
+                if (isWithinSupport(i, x))
+                {
+                    CutNode node = loadCutNode(i);
+                    vec3 irradiance = cutWeight(node, x, n) * node.irradiance;
+                    sum += irradiance;
+                    is_sure = is_sure && (irradiance == vec3(0.0) || isSeenByAll(node));
+                    offer(reservoir, luminance(irradiance), i);
+                }
+                if (++i == end)
+                    break;
+            }
+        if (!hasRanges())
+            break;
+    }
     uint chosen = reservoir.chosen;
     if (chosen == kNone || !isSeen(loadCutNode(chosen), x, n, random))
         return Incident(vec3(0.0), -n, vec3(0.0));

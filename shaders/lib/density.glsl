@@ -38,24 +38,31 @@ float nearestRadius2(vec3 x, vec3 n, uint photon_count, uint wanted, float radiu
         uint open = kDensityBins, looked = 0u;
         bool overcrowded = false;
         uint found = below;
-        uint first, end;
+        uint i, end;
         beginRanges(photon_count);
-        while (!overcrowded && nextRange(x, low + float(open) * width, first, end))
+        for (;;)
         {
-            for (uint i = first; i < end; ++i)
+            if (nextRange(x, low + float(open) * width, i, end))
             {
-                float d2 = photonDistance2(loadPhoton(i), x, n);
-                uint b = d2 < low || d2 >= high ? kDensityBins : min(uint((d2 - low) / width), kDensityBins - 1u);
-                if (b < open)
+                looked += end - i;
+                for (;;)
                 {
-                    ++bins[b];
-                    ++found;
+                    float d2 = photonDistance2(loadPhoton(i), x, n);
+                    uint b = d2 < low || d2 >= high ? kDensityBins : min(uint((d2 - low) / width), kDensityBins - 1u);
+                    if (b < open)
+                    {
+                        ++bins[b];
+                        ++found;
+                    }
+                    if (++i == end)
+                        break;
                 }
+                while (found >= wanted && found - bins[open - 1u] >= wanted)
+                    found -= bins[--open];
+                overcrowded = found >= wanted && looked > max(kDensityOvercrowded, 4u * wanted);
             }
-            while (found >= wanted && found - bins[open - 1u] >= wanted)
-                found -= bins[--open];
-            looked += end - first;
-            overcrowded = found >= wanted && looked > max(kDensityOvercrowded, 4u * wanted);
+            if (overcrowded || !hasRanges())
+                break;
         }
         if (found < wanted)
         {
@@ -91,15 +98,22 @@ DensityEstimate estimateIrradiance(vec3 x, vec3 n, uint photon_count, uint wante
 {
     float within2 = nearestRadius2(x, n, photon_count, wanted, radius2, guess2);
     vec3 sum = vec3(0.0);
-    uint first, end;
+    uint i, end;
     beginRanges(photon_count);
-    while (nextRange(x, within2, first, end))
-        for (uint i = first; i < end; ++i)
-        {
-            float d2 = photonDistance2(loadPhoton(i), x, n);
-            if (d2 < within2)
-                sum += loadPhoton(i).power * square(1.0 - d2 / within2);
-        }
+    for (;;)
+    {
+        if (nextRange(x, within2, i, end))
+            for (;;)
+            {
+                float d2 = photonDistance2(loadPhoton(i), x, n);
+                if (d2 < within2)
+                    sum += loadPhoton(i).power * square(1.0 - d2 / within2);
+                if (++i == end)
+                    break;
+            }
+        if (!hasRanges())
+            break;
+    }
     return DensityEstimate(sum * (3.0 * kInvPi / within2), within2);
 }
 
@@ -108,15 +122,22 @@ Incident densityLight(vec3 x, vec3 n, uint photon_count, uint wanted, float radi
 {
     DensityEstimate estimate = estimateIrradiance(x, n, photon_count, wanted, radius2, guess2);
     Reservoir reservoir = Reservoir(random, 0.0, kNone);
-    uint first, end;
+    uint i, end;
     beginRanges(photon_count);
-    while (nextRange(x, estimate.radius2, first, end))
-        for (uint i = first; i < end; ++i)
-        {
-            float d2 = photonDistance2(loadPhoton(i), x, n);
-            if (d2 < estimate.radius2)
-                offer(reservoir, luminance(loadPhoton(i).power) * square(1.0 - d2 / estimate.radius2), i);
-        }
+    for (;;)
+    {
+        if (nextRange(x, estimate.radius2, i, end))
+            for (;;)
+            {
+                float d2 = photonDistance2(loadPhoton(i), x, n);
+                if (d2 < estimate.radius2)
+                    offer(reservoir, luminance(loadPhoton(i).power) * square(1.0 - d2 / estimate.radius2), i);
+                if (++i == end)
+                    break;
+            }
+        if (!hasRanges())
+            break;
+    }
     if (reservoir.chosen == kNone)
         return Incident(estimate.irradiance, -n, estimate.irradiance);
     vec3 color = loadPhoton(reservoir.chosen).power;

@@ -53,11 +53,15 @@ Reflection reflectionBy(GlossyLobe lobe, vec3 normal, vec3 towards)
     return r;
 }
 
+/// 127 times what unpackSnorm4x8 gives of what packSnorm4x8 has made, in fewer instructions where none does it alone.
+vec4 signedBytes(uint word) { return vec4(ivec4(word << 24, word << 16, word << 8, word) >> 24); }
+
 /// What the lobe makes of one channel of a sample's light, before it is divided by evenLight.
 float channelLight(Reflection r, uvec4 words)
 {
-    return 1.0 + dot(r.weights[0], unpackSnorm4x8(words.x)) + dot(r.weights[1], unpackSnorm4x8(words.y)) +
-           dot(r.weights[2], unpackSnorm4x8(words.z)) + dot(r.weights[3], unpackSnorm4x8(words.w));
+    float sum = dot(r.weights[0], signedBytes(words.x)) + dot(r.weights[1], signedBytes(words.y)) +
+                dot(r.weights[2], signedBytes(words.z)) + dot(r.weights[3], signedBytes(words.w));
+    return 1.0 + sum * (1.0 / 127.0);
 }
 
 /// The same of even light of irradiance 1. Low bands cannot represent the darkness below the sample's horizon.

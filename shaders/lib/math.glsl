@@ -9,6 +9,13 @@ const float kInfinity = 3e38; // metres: farther than everything, and still fini
 float square(float x) { return x * x; }
 vec3 square(vec3 v) { return v * v; }
 float maxComponent(vec3 v) { return max(v.x, max(v.y, v.z)); }
+/// a / b, where that is below 2^20, without an integer division: software Vulkan makes those one thread after the other.
+uint quotient(uint a, uint b)
+{
+    uint q = uint(float(a) / float(b)); // one too large or too small at most
+    int rest = int(a - q * b);
+    return rest < 0 ? q - 1u : rest >= int(b) ? q + 1u : q;
+}
 /// Rec. 709 luminance of linear RGB.
 float luminance(vec3 rgb) { return dot(rgb, vec3(0.2126, 0.7152, 0.0722)); }
 

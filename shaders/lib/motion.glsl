@@ -22,7 +22,8 @@ vec3 displacementOf(ShadingPoint point)
 Motion motionOf(uint pixel, ShadingPoint point, vec3 displacement, float spread, bool has_last)
 {
     CameraParams camera = views.now;
-    vec2 at = vec2(pixel % camera.width, pixel / camera.width) + (camera.jitter.x > 0.0 ? camera.jitter : vec2(0.5));
+    uint row = quotient(pixel, camera.width);
+    vec2 at = vec2(pixel - row * camera.width, row) + (camera.jitter.x > 0.0 ? camera.jitter : vec2(0.5));
     Ray ray = cameraRay(camera, at, pixel);
     float distance_ = kInfinity;
     if (point.slot != kNone)

@@ -10,7 +10,7 @@
 /// The sampler of a path at its vertex number `depth`.
 Sampler vertexSampler(uint path, uint depth, uint pixel_count, uint first_sample, uint seed)
 {
-    uint sample_ = path / pixel_count; // one division: software Vulkan makes them one by one
+    uint sample_ = quotient(path, pixel_count);
     return Sampler(hash(seed, path - sample_ * pixel_count), first_sample + sample_, kCameraDimensions + depth * kVertexDimensions);
 }
 

@@ -1,4 +1,4 @@
-// What pixels remember of their surfaces. The kernel declares `buffer Motions`, `buffer Guides`, `buffer Displacements`, `OldGuides`,
+// What pixels remember of their surfaces. The kernel declares `buffer Motions`, `buffer Displacements`, `Guides`, `OldGuides`,
 // `OldHistory` and `HistoryParams params` before it includes this. Functions only.
 #ifndef LIB_RECALL_GLSL
 #define LIB_RECALL_GLSL
@@ -41,6 +41,12 @@ Memory meanOf(Taps taps)
     return taps.weights < kLeastTap ? kNoMemory : Memory(m.light / taps.weights, m.frames / taps.weights, m.spread / taps.weights);
 }
 
+SurfaceGuide loadGuide(uint pixel)
+{
+    uvec4 bits = texelFetch(Guides, int(pixel));
+    return SurfaceGuide(uintBitsToFloat(bits.xyz), bits.w);
+}
+
 bool sameSurface(SurfaceGuide now, vec3 normal, uvec4 old, float pixel)
 {
     vec3 d = uintBitsToFloat(old.xyz) - now.position;
@@ -59,16 +65,17 @@ Past recall(uint pixel)
     Motion motion = motions[pixel];
     if (params.has_previous == 0u || motion.from.x == kNoMotion || !(motion.distance < kInfinity))
         return Past(kNoMemory, kNoMemory, kNoMemory, kNoMemory);
-    ivec2 size = ivec2(params.width, params.point_count / params.width);
-    vec2 at = vec2(pixel % params.width, pixel / params.width) + motion.from;
+    ivec2 size = ivec2(params.width, quotient(params.point_count, params.width));
+    uint row = quotient(pixel, params.width);
+    vec2 at = vec2(pixel - row * params.width, row) + motion.from;
     ivec2 corner = ivec2(floor(at));
     vec2 part = at - vec2(corner);
-    SurfaceGuide guide = guides[pixel];
+    SurfaceGuide guide = loadGuide(pixel);
     if (params.moves != 0u)
         guide.position -= displacements[pixel]; // where it was
     vec3 normal = octahedralToUnit(unpackSnorm4x8(guide.normals).xy);
     float footprint = footprintAt(motion);
-    for (int k = 0; k < 4; ++k)
+    [[unroll]] for (int k = 0; k < 4; ++k)
     {
         ivec2 step_ = ivec2(k & 1, k >> 1), place = corner + step_;
         if (any(lessThan(place, ivec2(0))) || any(greaterThanEqual(place, size)))

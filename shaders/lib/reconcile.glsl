@@ -36,7 +36,7 @@ void loadSurroundings()
         ivec2 place = corner + ivec2(i % kBlockSide, i / kBlockSide);
         bool outside = any(lessThan(place, ivec2(0))) || any(greaterThanEqual(place, size));
         int pixel = outside ? 0 : place.y * size.x + place.x;
-        SurfaceGuide g = guides[pixel];
+        SurfaceGuide g = loadGuide(pixel);
         block_guides[i] = uvec4(floatBitsToUint(outside ? vec3(kInfinity) : g.position), g.normals);
         block_pairs[i][0] = texelFetch(Compared, 2 * pixel);
         block_pairs[i][1] = texelFetch(Compared, 2 * pixel + 1);
@@ -115,7 +115,7 @@ int tileIndex(int k) { return tileOf(k).y * tileCounts().x + tileOf(k).x; }
 
 Surroundings surroundingsOf(uint pixel)
 {
-    SurfaceGuide guide = guides[pixel];
+    SurfaceGuide guide = loadGuide(pixel);
     vec3 normal = octahedralToUnit(unpackSnorm4x8(guide.normals).xy);
     float footprint = footprintAt(motions[pixel]);
     Surroundings found = Surroundings(0u, 0u);

@@ -1,8 +1,9 @@
 // Means of pixels' light in this frame and in those before. The kernel declares `buffer NewHistory`, `buffer DirectSignals`,
-// `buffer GlossySignals`, `buffer DiffusePoints`, `buffer Indirect`, `buffer Caustics` and `HistoryParams params` before it includes
+// `buffer GlossySignals`, `usamplerBuffer DiffusePoints`, `buffer Indirect`, `buffer Caustics` and `HistoryParams params` before it includes
 // this. Functions only.
 #ifndef LIB_REMEMBER_GLSL
 #define LIB_REMEMBER_GLSL
+#include "shaders/lib/diffuse_point.glsl"
 #include "shaders/lib/recall.glsl"
 
 // Reflections move with the eye: the sharper the lobe, the fewer past frames are used. A lobe of width 1 moves with the surface,
@@ -51,7 +52,7 @@ void rememberPixel(uint pixel, Past past)
 {
     float most = float(params.most_frames);
     uint random = hash(params.seed, pixel);
-    vec3 reflectance = max(diffuse_points[pixel].reflectance, vec3(kLeastReflectance));
+    vec3 reflectance = max(loadDiffusePoint(pixel).reflectance, vec3(kLeastReflectance));
     float lobe = unpackSignal(glossy_signals[pixel]).lobe;
     history[pixel] = PixelHistory(
         packMemory(rememberSignal(direct_signals[pixel], past.direct, most), random),

@@ -13,7 +13,7 @@ SampleTexels loadSample(uint index)
     int row = int(3u * index);
     vec4 a = uintBitsToFloat(texelFetch(Samples, row)), b = uintBitsToFloat(texelFetch(Samples, row + 1));
     vec4 c = uintBitsToFloat(texelFetch(Samples, row + 2));
-    return SampleTexels(a.xyz, a.w, b.xyz, b.w, c.xyz, c.w);
+    return SampleTexels(a.xyz, a.w, b.xyz, floatBitsToUint(b.w), c.xyz, c.w);
 }
 
 /// A sample's weight (Ward et al. 1988), taken smoothly to zero at the rim of its support so that no edge shows where one
@@ -22,7 +22,7 @@ float sampleWeight(SampleTexels s, vec3 x, vec3 n)
 {
     vec3 d = x - s.position;
     float distance2 = dot(d, d);
-    if (distance2 >= s.support2 || dot(n, s.normal) <= 0.01 || dot(d, n + s.normal) < -0.01 * s.harmonic_mean_distance)
+    if (distance2 >= s.support2 || dot(n, s.normal) <= 0.01 || dot(d, n + s.normal) * s.inverse_harmonic < -0.01)
         return 0.0;
     float rim = square(max(0.0, 1.0 - surfaceDistance2(d, s.normal) / s.support2));
     return rim * min(kLargestWeight, 1.0 / max(sqrt(distance2) * s.inverse_harmonic + normalVariation(n, s.normal), 1e-6));

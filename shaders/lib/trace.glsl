@@ -23,15 +23,19 @@ bool meetsAlpha(Hit hit, uint triangle, uint seed)
 /// @param slots of a leaf, a bit each from slot `first` on
 void hitAlphaTriangles(uint first, uint slots, TriangleRay ray, Place start, inout Place end, inout Hit hit, uint seed)
 {
-    for (; slots != 0u; slots &= slots - 1u)
+    for (;;)
     {
         uint slot = first + findLSB(slots);
         Place place = end;
         Hit candidate = hit;
-        if (!hitTriangle(slot, ray, start, place, candidate) || !meetsAlpha(candidate, loadBvhTriangle(slot).triangle, seed))
-            continue;
-        hit = candidate;
-        end = place;
+        if (hitTriangle(slot, ray, start, place, candidate) && meetsAlpha(candidate, loadBvhTriangle(slot).triangle, seed))
+        {
+            hit = candidate;
+            end = place;
+        }
+        slots &= slots - 1u;
+        if (slots == 0u)
+            break;
     }
 }
 
@@ -45,38 +49,50 @@ Hit closestHit(vec3 origin, vec3 direction, Place start, float t_max, uint seed)
     Place end = Place(t_max, 0u);
     BoxRay ray = boxRay(origin, direction);
     TriangleRay triangle_ray = triangleRay(origin, direction);
-    while (true)
+    for (;;)
     {
         // Down to a leaf; then its triangles: two loops, so that neighbouring rays do the same kind of work together
         // (Aila & Laine 2009, "Understanding the Efficiency of Ray Traversal on GPUs").
         uint first, undecided = 0u; // slots, a bit each
-        while (undecided == 0u)
+        for (;;)
         {
             current = nearestLeaf(current, ray, start.t, end.t);
-            if (current == kNone)
-                return hit;
-            first = current & kLeafFirstMask;
-            for (uint slot = first; slot < leafEnd(current); ++slot)
+            if (current != kNone)
             {
-                Place place = end;
-                Hit candidate = hit;
-                if (!hitTriangle(slot, triangle_ray, start, place, candidate))
-                    continue;
-                if (kSceneHasAlpha && (loadBvhTriangle(slot).flags & kTriangleAlpha) != 0u)
+                first = current & kLeafFirstMask;
+                uint slot = first, last = leafEnd(current) - 1u;
+                for (;;)
                 {
-                    undecided |= 1u << (slot - first);
-                    continue;
+                    Place place = end;
+                    Hit candidate = hit;
+                    if (hitTriangle(slot, triangle_ray, start, place, candidate))
+                    {
+                        if (kSceneHasAlpha && (loadBvhTriangle(slot).flags & kTriangleAlpha) != 0u)
+                            undecided |= 1u << (slot - first);
+                        else
+                        {
+                            hit = candidate;
+                            end = place;
+                        }
+                    }
+                    if (slot++ == last)
+                        break;
                 }
-                hit = candidate;
-                end = place;
+                if (!kSceneHasAlpha || undecided == 0u)
+                    current = popNearer(end.t);
             }
-            if (undecided == 0u)
-                current = popNearer(end.t);
+            if (current == kNone || (kSceneHasAlpha && undecided != 0u))
+                break;
         }
-        if (kSceneHasAlpha)
+        if (kSceneHasAlpha && undecided != 0u)
+        {
             hitAlphaTriangles(first, undecided, triangle_ray, start, end, hit, seed);
-        current = popNearer(end.t);
+            current = popNearer(end.t);
+        }
+        if (!kSceneHasAlpha || current == kNone)
+            break;
     }
+    return hit;
 }
 
 /// What a thin wall lets straight through where it is; 0 for any other surface.
@@ -124,37 +140,32 @@ bool meetsOpaque(vec3 origin, vec3 direction, float t_max, out bool met_transluc
     BoxRay ray = boxRay(origin, direction);
     TriangleRay triangle_ray = triangleRay(origin, direction);
     met_translucent = false;
-    while (true)
+    bool met = false;
+    for (;;)
     {
-        uint first, undecided = 0u; // what the light may lie on
-        while (undecided == 0u)
+        current = anyLeaf(current, ray, t_max);
+        if (current != kNone)
         {
-            current = anyLeaf(current, ray, t_max);
-            if (current == kNone)
-                return false;
-            first = current & kLeafFirstMask;
-            for (uint slot = first; slot < leafEnd(current); ++slot)
+            uint slot = current & kLeafFirstMask, last = leafEnd(current) - 1u;
+            for (;;)
             {
-                Place end = Place(t_max, 0u);
                 Hit hit;
-                if (!hitTriangle(slot, triangle_ray, kRayStart, end, hit))
-                    continue;
-                if (kSceneHasTranslucency && loadBvhTriangle(slot).flags != 0u)
-                    met_translucent = true;
-                else if (hit.t < 0.5 * t_max)
-                    return true;
-                else
-                    undecided |= 1u << (slot - first);
+                if (isBetween(slot, triangle_ray, t_max, hit))
+                {
+                    if (kSceneHasTranslucency && loadBvhTriangle(slot).flags != 0u)
+                        met_translucent = true;
+                    else
+                        met = true;
+                }
+                if (met || slot++ == last)
+                    break;
             }
-            if (undecided == 0u)
-                current = popNearer(t_max);
+            current = met ? kNone : popAny();
         }
-        Hit hit;
-        for (; undecided != 0u; undecided &= undecided - 1u)
-            if (isBetween(first + findLSB(undecided), triangle_ray, t_max, hit))
-                return true;
-        current = popNearer(t_max);
+        if (current == kNone)
+            break;
     }
+    return met;
 }
 
 /// What all translucent triangles within t_max let through together: each is stored once, so in any order.
@@ -165,36 +176,51 @@ vec3 translucentTransmittance(vec3 origin, vec3 direction, float t_max)
     BoxRay ray = boxRay(origin, direction);
     TriangleRay triangle_ray = triangleRay(origin, direction);
     vec3 through = vec3(1.0);
-    while (through != vec3(0.0))
+    for (;;)
     {
         uint first, met = 0u; // slots, a bit each
-        while (met == 0u)
+        for (;;)
         {
             current = anyLeaf(current, ray, t_max);
-            if (current == kNone)
-                return through;
-            first = current & kLeafFirstMask;
-            for (uint slot = first; slot < leafEnd(current); ++slot)
+            if (current != kNone)
             {
-                Place end = Place(t_max, 0u);
-                Hit hit;
-                if (loadBvhTriangle(slot).flags != 0u && hitTriangle(slot, triangle_ray, kRayStart, end, hit))
-                    met |= 1u << (slot - first);
+                first = current & kLeafFirstMask;
+                uint slot = first, last = leafEnd(current) - 1u;
+                for (;;)
+                {
+                    Place end = Place(t_max, 0u);
+                    Hit hit;
+                    if (loadBvhTriangle(slot).flags != 0u && hitTriangle(slot, triangle_ray, kRayStart, end, hit))
+                        met |= 1u << (slot - first);
+                    if (slot++ == last)
+                        break;
+                }
+                if (met == 0u)
+                    current = popAny();
             }
-            if (met == 0u)
-                current = popNearer(t_max);
+            if (current == kNone || met != 0u)
+                break;
         }
-        for (; met != 0u; met &= met - 1u)
+        if (current != kNone)
         {
-            uint slot = first + findLSB(met);
-            Hit hit;
-            if (!isBetween(slot, triangle_ray, t_max, hit))
-                continue;
-            vec3 layer = layerTransmittance(hit, direction);
-            if (layer == vec3(0.0) || ownsEdge(slot, triangle_ray)) // two halves of a pane are one pane along their edge
-                through *= layer;
+            for (;;)
+            {
+                uint slot = first + findLSB(met);
+                Hit hit;
+                if (isBetween(slot, triangle_ray, t_max, hit))
+                {
+                    vec3 layer = layerTransmittance(hit, direction);
+                    if (layer == vec3(0.0) || ownsEdge(slot, triangle_ray)) // two halves of a pane are one pane along their edge
+                        through *= layer;
+                }
+                met &= met - 1u;
+                if (met == 0u)
+                    break;
+            }
+            current = through == vec3(0.0) ? kNone : popAny();
         }
-        current = popNearer(t_max);
+        if (current == kNone)
+            break;
     }
     return through;
 }

@@ -18,13 +18,29 @@ TreeNode loadTreeNode(uint index)
 uvec2 tree_stack[kTreeStackSize];
 uint tree_depth;
 
-/// Starts a search among `count` spheres.
+/// Starts a search among `count` spheres. Loops over what it finds test at their end (see lib/bvh.glsl why):
+///     beginRanges(count);
+///     for (;;)
+///     {
+///         if (nextRange(..., i, end))
+///             for (;;)
+///             {
+///                 ... i ...
+///                 if (++i == end)
+///                     break;
+///             }
+///         if (!hasRanges())
+///             break;
+///     }
 void beginRanges(uint count)
 {
     tree_depth = 0u;
     if (count > 0u)
         tree_stack[tree_depth++] = uvec2(0u, count);
 }
+
+/// Whether there may be another range.
+bool hasRanges() { return tree_depth > 0u; }
 
 /// Between two boxes.
 float boxDistance2(vec3 a_low, vec3 a_high, vec3 b_low, vec3 b_high)
@@ -33,43 +49,51 @@ float boxDistance2(vec3 a_low, vec3 a_high, vec3 b_low, vec3 b_high)
     return dot(outside, outside);
 }
 
+/// First of an entry's spheres: a right child's range starts at its own index, a left child's ends there; the root is both.
+uint firstOf(uvec2 entry)
+{
+    return (entry.y & kTreeLeafBit) != 0u || entry.x == 0u ? entry.x : entry.x + 1u - entry.y;
+}
+
+bool isBucket(uvec2 entry) { return (entry.y & ~kTreeLeafBit) <= kTreeBucket; }
+
 /// The next range [first, end) of sorted spheres, nearer ones first, whose bounds come within sqrt(radius2) of the box from
 /// low to high; radius2 may shrink from call to call. Ranges are short (kTreeBucket) and disjoint.
 /// @return false when there is none left
 bool nextRange(vec3 low, vec3 high, float radius2, out uint first, out uint end)
 {
-    uvec2 top;
-    bool descends = false; // into top; else it is to be taken from the stack
-    while (descends || tree_depth > 0u)
-    {
-        if (!descends)
-            top = tree_stack[--tree_depth];
-        uint count = top.y & ~kTreeLeafBit;
-        // A right child's range starts at its own index, a left child's ends there; the root is both.
-        first = (top.y & kTreeLeafBit) != 0u || top.x == 0u ? top.x : top.x + 1u - count;
-        end = first + count;
-        if (count <= kTreeBucket)
-            return true;
-        TreeNode node = loadTreeNode(top.x);
-        uint left = node.left & ~kTreeLeafBit;
-        uvec2 near = uvec2(left, left + 1u - first), far = uvec2(left + 1u, (end - left - 1u) | kTreeLeafBit);
-        float near2 = boxDistance2(low, high, node.left_min, node.left_max);
-        float far2 = boxDistance2(low, high, node.right_min, node.right_max);
-        if (far2 < near2)
+    const uvec2 kNowhere = uvec2(0u);
+    uvec2 top = tree_depth > 0u ? tree_stack[--tree_depth] : kNowhere;
+    if (!isBucket(top))
+        for (;;)
         {
-            uvec2 swapped = near;
-            near = far;
-            far = swapped;
-            float swapped2 = near2;
-            near2 = far2;
-            far2 = swapped2;
+            first = firstOf(top);
+            end = first + (top.y & ~kTreeLeafBit);
+            TreeNode node = loadTreeNode(top.x);
+            uint left = node.left & ~kTreeLeafBit;
+            uvec2 near = uvec2(left, left + 1u - first), far = uvec2(left + 1u, (end - left - 1u) | kTreeLeafBit);
+            float near2 = boxDistance2(low, high, node.left_min, node.left_max);
+            float far2 = boxDistance2(low, high, node.right_min, node.right_max);
+            if (far2 < near2)
+            {
+                uvec2 swapped = near;
+                near = far;
+                far = swapped;
+                float swapped2 = near2;
+                near2 = far2;
+                far2 = swapped2;
+            }
+            if (far2 <= radius2)
+                tree_stack[tree_depth++] = far;
+            top = near;
+            if (near2 > radius2) // then far is farther, too
+                top = tree_depth > 0u ? tree_stack[--tree_depth] : kNowhere;
+            if (isBucket(top))
+                break;
         }
-        descends = near2 <= radius2;
-        if (far2 <= radius2)
-            tree_stack[tree_depth++] = far;
-        top = near;
-    }
-    return false;
+    first = firstOf(top);
+    end = first + (top.y & ~kTreeLeafBit);
+    return first < end;
 }
 
 /// The same around a point.

@@ -46,10 +46,11 @@ struct ShadingPoint // where a pixel's light is to be found: first vertex after 
     uint depth;      // specular events before it
     vec3 throughput; // of the chain, 1/probability of its choices included
     vec2 barycentrics;
-    float width; // metres, across the chain's last ray: of what textures show at once
-    float back;  // metres, back along that ray to where rays leave: off the surface by more than rounding
+    float width;  // metres, across the chain's last ray: of what textures show at once
+    float back;   // metres, back along that ray to where rays leave: off the surface by more than rounding
+    float unused; // whole texels
 };
-GPU_SIZE(ShadingPoint, 60);
+GPU_SIZE(ShadingPoint, 64);
 
 struct DiffusePoint // what a shading point shows of the irradiance that falls on it, so that nobody works it out again
 {

@@ -30,8 +30,9 @@ struct ShadowRay // adds `radiance` to its path unless it is occluded
 {
     Ray ray;
     vec3 radiance; // W/(m^2 sr), all weights included
+    float unused;  // whole texels
 };
-GPU_SIZE(ShadowRay, 44);
+GPU_SIZE(ShadowRay, 48);
 
 struct QueueParams
 {

@@ -96,7 +96,7 @@ void sendShadowRay(PathVertex v, PathState state, uint path, inout Sampler sampl
         carried *= misWeight(light.pdf, f.pdf);
     if (carried == vec3(0.0))
         return;
-    shadow_rays[atomicAdd(shadow_queue.count, 1u)] = ShadowRay(shadowRay(s, light, path), carried);
+    shadow_rays[atomicAdd(shadow_queue.count, 1u)] = ShadowRay(shadowRay(s, light, path), carried, 0.0);
 }
 
 void continuePath(PathVertex v, PathState state, uint path, inout Sampler sampler_)

@@ -53,20 +53,27 @@ void main()
     uint owner = neighbourInOrder(p);
     float best = geometricVariation(alpha(), x, n, clusters[owner].position, unpackNormal(clusters[owner].normal));
     float radius2 = square(best / alpha());
-    uint first, end;
+    uint i, end;
     beginRanges(size.count);
-    while (nextRange(x, radius2, first, end))
-        for (uint i = first; i < end; ++i)
-        {
-            uint cluster = order[i];
-            float eps = geometricVariation(alpha(), x, n, clusters[cluster].position, unpackNormal(clusters[cluster].normal));
-            if (eps < best || (eps == best && cluster < owner))
+    for (;;)
+    {
+        if (nextRange(x, radius2, i, end))
+            for (;;)
             {
-                best = eps;
-                owner = cluster;
-                radius2 = square(best / alpha());
+                uint cluster = order[i];
+                float eps = geometricVariation(alpha(), x, n, clusters[cluster].position, unpackNormal(clusters[cluster].normal));
+                if (eps < best || (eps == best && cluster < owner))
+                {
+                    best = eps;
+                    owner = cluster;
+                    radius2 = square(best / alpha());
+                }
+                if (++i == end)
+                    break;
             }
-        }
+        if (!hasRanges())
+            break;
+    }
     owners[p] = uvec2(owner, floatBitsToUint(best));
     vec3 d = x - clusters[owner].position;
     float width = cubeWidth(clusters[owner].position);

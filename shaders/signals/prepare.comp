@@ -12,7 +12,7 @@ layout(local_size_x = kRaysGroupSize) in;
 layout(push_constant, scalar) uniform Params { SignalParams params; };
 
 layout(set = 1, binding = 0, scalar) readonly buffer Views { FrameViews views; };
-layout(set = 1, binding = 1, scalar) readonly buffer Points { ShadingPoint points[]; };
+layout(set = 1, binding = 1) uniform usamplerBuffer Points;
 layout(set = 1, binding = 2, scalar) readonly buffer Direct { vec3 direct[]; };
 layout(set = 1, binding = 3, scalar) readonly buffer Glossy { vec3 glossy[]; };
 layout(set = 1, binding = 4, scalar) writeonly buffer Guides { SurfaceGuide guides[]; };
@@ -23,6 +23,7 @@ layout(set = 1, binding = 8, scalar) readonly buffer LastCorners { TriangleCorne
 layout(set = 1, binding = 9, scalar) writeonly buffer Displacements { vec3 displacements[]; }; // where something can move
 
 #include "shaders/lib/motion.glsl"
+#include "shaders/lib/point.glsl"
 
 /// A signal of unknown error.
 LightSignal signalOf(vec3 light, vec3 reflectance, float lobe)
@@ -35,10 +36,8 @@ void main()
     uint pixel = gl_GlobalInvocationID.x;
     if (pixel >= params.point_count)
         return;
-    ShadingPoint point = points[pixel];
-    LightSignal none = packSignal(Signal(vec3(0.0), vec3(0.0), 0.0, 0.0));
-    direct_signals[pixel] = none;
-    glossy_signals[pixel] = none;
+    ShadingPoint point = loadPoint(pixel);
+    LightSignal direct_signal = packSignal(Signal(vec3(0.0), vec3(0.0), 0.0, 0.0)), glossy_signal = direct_signal;
     vec3 smooth_normal = vec3(0.0, 0.0, 1.0), normal = smooth_normal;
     if (point.slot != kNone)
     {
@@ -48,12 +47,14 @@ void main()
         vec3 both = specular + diffuseReflectance(v.bsdf, cosine);
         float share = luminance(specular) / max(luminance(both), 1e-20);
         if ((params.terms & kLightDirect) != 0u)
-            direct_signals[pixel] = signalOf(direct[pixel], point.throughput * both, mix(1.0, sharpestAlpha(v.bsdf), share));
+            direct_signal = signalOf(direct[pixel], point.throughput * both, mix(1.0, sharpestAlpha(v.bsdf), share));
         if ((params.terms & kLightGlossy) != 0u && hasGlossyLobe(v.bsdf)) // else it sends no ray
-            glossy_signals[pixel] = signalOf(glossy[pixel], point.throughput * specular, sharpestAlpha(v.bsdf));
+            glossy_signal = signalOf(glossy[pixel], point.throughput * specular, sharpestAlpha(v.bsdf));
         smooth_normal = v.surface.smooth_normal;
         normal = v.surface.normal;
     }
+    direct_signals[pixel] = direct_signal;
+    glossy_signals[pixel] = glossy_signal;
     guides[pixel] = SurfaceGuide(point.slot != kNone ? point.position : vec3(kInfinity), packSnorm4x8(vec4(unitToOctahedral(smooth_normal), unitToOctahedral(normal))));
     vec3 displacement = displacementOf(point);
     motions[pixel] = motionOf(pixel, point, displacement, params.spread, params.has_previous != 0u);

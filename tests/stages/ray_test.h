@@ -80,12 +80,12 @@ protected:
         std::vector<gpu::ShadowRay> shadow_rays;
         for (uint32_t i = 0; i < count; ++i)
         {
-            shadow_rays.push_back({rays[i], light});
+            shadow_rays.push_back({.ray = rays[i], .radiance = light, .unused = 0});
             shadow_rays.back().ray.path = count - 1 - i; // any one-to-one mapping will do
         }
         const std::vector<gpu::vec3> start(count, before);
         const Buffer size = device().array<gpu::QueueSize>("test.size", 1);
-        const Buffer queue = device().upload<gpu::ShadowRay>("test.shadow_rays", shadow_rays);
+        const Buffer queue = device().uploadTexels<gpu::ShadowRay>("test.shadow_rays", shadow_rays);
         const Buffer radiance = device().upload<gpu::vec3>("test.radiance", start);
         Recorder rec(device());
         rec.begin(scene.gpu->descriptorSet());

@@ -372,11 +372,12 @@ std::vector<gpu::vec3> changeOfDirectLight(const Device& device, const Opened& o
                 if (const auto lit = direct_light(first.rays[i], first.hits[i], light))
                 {
                     const gpu::vec3 difference = lit->mean_fresnel + -1.0f * lit->gltf;
-                    shadow_rays.push_back({lit->shadow_ray, (1.0f / kRaysPerPixel) * difference});
+                    shadow_rays.push_back(
+                        {.ray = lit->shadow_ray, .radiance = (1.0f / kRaysPerPixel) * difference, .unused = 0});
                     shadow_rays.back().ray.path = i;
                 }
         const Buffer size = device.array<gpu::QueueSize>("test.size", 1);
-        const Buffer queue = device.upload<gpu::ShadowRay>("test.shadow_rays", shadow_rays);
+        const Buffer queue = device.uploadTexels<gpu::ShadowRay>("test.shadow_rays", shadow_rays);
         const Buffer arrived = device.array<gpu::vec3>("test.arrived", first.hits.size());
         Recorder rec(device);
         rec.begin(opened.scene->descriptorSet());

@@ -16,7 +16,7 @@ Result<RayThroughput> measureRays(const Device& device, const SceneGpu& scene, c
     const RayStage stage(device, scene);
     const Kernel generate = device.kernel("primary/generate"), diffuse = device.kernel("bench/diffuse");
     const RayQueue primary(device, "bench.primary", count), bounced(device, "bench.bounced", count);
-    const Buffer shadow_rays = device.array<gpu::ShadowRay>("bench.shadow_rays", count);
+    const Buffer shadow_rays = device.texelArray<gpu::ShadowRay>("bench.shadow_rays", count);
     const Buffer hits = device.array<gpu::Hit>("bench.hits", count),
                  bounced_hits = device.array<gpu::Hit>("bench.bounced_hits", count);
     const Buffer radiance = device.array<gpu::vec3>("bench.radiance", count);
