@@ -40,14 +40,22 @@ std::string settingsDifference(const std::string& is, const std::string& wanted)
         text += (text.empty() ? "" : "; ") + part;
     return text;
 }
+/// ffmpeg 5 loses its way in a header with texts of more than 255 bytes.
+constexpr size_t kPieceBytes = 200;
+
+std::string settingsPiece(size_t index)
+{
+    return fmt::format("{}settings{}", kNotePrefix, index == 0 ? "" : fmt::format(".{}", index));
+}
 } // namespace
 
 std::vector<PictureNote> originNotes(const PictureOrigin& origin)
 {
     std::vector<PictureNote> notes{{std::string(kNotePrefix) + "package", origin.package},
                                    {std::string(kNotePrefix) + "version", origin.version},
-                                   {std::string(kNotePrefix) + "settings", origin.settings},
                                    {std::string(kNotePrefix) + "device", origin.device}};
+    for (size_t at = 0; at < origin.settings.size(); at += kPieceBytes)
+        notes.push_back({settingsPiece(at / kPieceBytes), origin.settings.substr(at, kPieceBytes)});
     if (!origin.samples.empty())
         notes.push_back({std::string(kNotePrefix) + "samples", origin.samples});
     return notes;
@@ -59,9 +67,12 @@ Result<PictureOrigin> readOrigin(const std::filesystem::path& path)
     if (!notes)
         return notes.error();
     const auto note = [&](const char* name) { return noteOf(*notes, std::string(kNotePrefix) + name); };
+    std::string settings;
+    for (size_t piece = 0; !noteOf(*notes, settingsPiece(piece)).empty(); ++piece)
+        settings += noteOf(*notes, settingsPiece(piece));
     return PictureOrigin{.package = note("package"),
                          .version = note("version"),
-                         .settings = note("settings"),
+                         .settings = settings,
                          .samples = note("samples"),
                          .device = note("device")};
 }
