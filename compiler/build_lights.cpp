@@ -4,135 +4,129 @@
 #include "compiler/emission_average.h"
 #include "compiler/environment.h"
 #include "compiler/vector_math.h"
-#include "format/alias_table.h"
+#include "format/light_table.h"
 #include "format/spot_cone.h"
 
 #include <algorithm>
-#include <numbers>
 #include <numeric>
 
 namespace
 {
-constexpr double kPi = std::numbers::pi;
-// Lights below this fraction of the total would have a probability that single precision cannot divide by.
-constexpr double kLeastShare = 1e-30;
+namespace fb = lumicut::fb;
 
 struct Candidate
 {
     gpu::Light light;
-    double power;                   // W, luminance
+    gpu::vec3 yield{1, 1, 1};
     bool keep = false;              // where it has no power, too
     uint32_t punctual = gpu::kNone; // its number in the scene
+    double power = 0;               // W, luminance
 };
 
-/// Radius of the sphere about the scene's box.
-double sceneRadius(const WorldMesh& mesh)
+package::LightSurroundings surroundingsOf(const SceneData& scene)
 {
-    if (mesh.positions.empty())
-        return 0;
-    gpu::vec3 low = mesh.positions[0];
-    gpu::vec3 high = low;
-    for (const gpu::vec3& p : mesh.positions)
+    package::LightSurroundings around;
+    if (!scene.mesh.positions.empty())
     {
-        low = min(low, p);
-        high = max(high, p);
+        gpu::vec3 low = scene.mesh.positions[0];
+        gpu::vec3 high = low;
+        for (const gpu::vec3& p : scene.mesh.positions)
+        {
+            low = min(low, p);
+            high = max(high, p);
+        }
+        around.radius = package::sphereRadius(low, high);
     }
-    return length(toDouble(high) - toDouble(low)) / 2;
+    if (scene.environment)
+        around.average_radiance = averageRadiance(*scene.environment);
+    return around;
 }
 
-/// Solid angle of a spot's cone weighted by its falloff, which rises as a square from the rim to `width` inside it.
-double spotSolidAngle(double cos_outer, double width)
+/// Materials that an animation can change in some way.
+struct AnimatedMaterials
 {
-    const double rim = std::min(width, 1 - cos_outer);
-    const double full = std::max(0.0, 1 - cos_outer - width);
-    return 2 * kPi * (full + rim * rim * rim / (3 * width * width));
-}
+    std::vector<bool> may_emit; // by material: at some time, whatever it is at rest
+    std::vector<bool> alpha;    // by material
+};
 
-Candidate punctual(const PunctualLight& source, double scene_radius)
+AnimatedMaterials animatedMaterials(const SceneData& scene)
 {
-    Candidate c{.light = {.p0 = toFloat(source.position),
-                          .kind = source.kind,
-                          .p1 = source.direction,
-                          .triangle = gpu::kNone,
-                          .p2 = {},
-                          .pmf = 0,
-                          .emission = source.intensity,
-                          .material = gpu::kNone},
-                .power = luminance(source.intensity)};
-    if (source.kind == gpu::kLightPoint)
-        c.power *= 4 * kPi;
-    else if (source.kind == gpu::kLightDirectional)
-        c.power *= kPi * scene_radius * scene_radius;
-    else
-    {
-        c.light.p2 = package::spotCone(source.inner_cone, source.outer_cone);
-        c.power *= spotSolidAngle(std::cos(source.outer_cone), 1 / double(c.light.p2.x));
-    }
-    return c;
+    AnimatedMaterials result{.may_emit = std::vector<bool>(scene.materials.size()),
+                             .alpha = std::vector<bool>(scene.materials.size())};
+    if (!scene.motion)
+        return result;
+    for (const auto& clip : scene.motion->tables.clips)
+        for (const auto& channel : clip->channels)
+        {
+            if (channel->target == fb::ChannelTarget::MaterialBaseColor)
+                result.alpha[channel->index] = true;
+            else if (channel->target == fb::ChannelTarget::MaterialEmissive ||
+                     channel->target == fb::ChannelTarget::MaterialEmissiveStrength)
+                result.may_emit[channel->index] = result.may_emit[channel->index] ||
+                                                  std::ranges::any_of(channel->values, [](float v) { return v != 0; });
+        }
+    return result;
 }
 
-Candidate emissiveTriangle(const SceneData& scene, uint32_t triangle)
+gpu::Light punctual(const PunctualLight& source)
+{
+    return {.p0 = toFloat(source.position),
+            .kind = source.kind,
+            .p1 = source.direction,
+            .triangle = gpu::kNone,
+            .p2 =
+                source.kind == gpu::kLightSpot ? package::spotCone(source.inner_cone, source.outer_cone) : gpu::vec3{},
+            .pmf = 0,
+            .emission = source.intensity,
+            .material = gpu::kNone};
+}
+
+/// @param any_alpha its material's alpha is animated: what of it counts cannot be said
+Candidate emissiveTriangle(const SceneData& scene, uint32_t triangle, bool any_alpha)
 {
     const uint32_t material_index = scene.mesh.materials[triangle];
     const gpu::Material& material = scene.materials[material_index];
     const gpu::uvec3& v = scene.mesh.triangles[triangle];
-    const gpu::vec3 p0 = scene.mesh.positions[v.x];
-    const gpu::vec3 p1 = scene.mesh.positions[v.y];
-    const gpu::vec3 p2 = scene.mesh.positions[v.z];
     const bool textured = material.emissive_texture != gpu::kNone;
     const bool two_sided = (material.flags & gpu::kMaterialDoubleSided) != 0;
-
-    gpu::vec3 mean = material.emission;
-    if (textured)
-    {
-        const gpu::vec3 texture = averageEmissiveTexture(scene, triangle);
-        mean = {mean.x * texture.x, mean.y * texture.y, mean.z * texture.z};
-    }
     const bool masked = (material.flags & gpu::kMaterialAlphaMask) != 0;
     const bool blended = (material.flags & gpu::kMaterialAlphaBlend) != 0;
-    if (blended)
-        mean = mean * material.alpha; // textures may take more away
-    if (masked && material.alpha < material.alpha_cutoff)
-        mean = {}; // nothing is there
-    const Vec3d origin = toDouble(p0);
-    const double area = length(cross(toDouble(p1) - origin, toDouble(p2) - origin)) / 2;
-    return {.light = {.p0 = p0,
+
+    gpu::vec3 yield = textured ? averageEmissiveTexture(scene, triangle) : gpu::vec3{1, 1, 1};
+    if (blended && !any_alpha)
+        yield = yield * material.alpha; // textures may take more away
+    if (masked && !any_alpha && material.alpha < material.alpha_cutoff)
+        yield = {}; // nothing is there
+    return {.light = {.p0 = scene.mesh.positions[v.x],
                       .kind = two_sided ? gpu::kLightTriangleTwoSided : gpu::kLightTriangle,
-                      .p1 = p1,
+                      .p1 = scene.mesh.positions[v.y],
                       .triangle = triangle,
-                      .p2 = p2,
+                      .p2 = scene.mesh.positions[v.z],
                       .pmf = 0,
                       .emission = material.emission,
                       .material = textured || masked || blended ? material_index : gpu::kNone},
-            .power = kPi * area * luminance(mean) * (two_sided ? 2 : 1)};
-}
-
-bool emits(const gpu::Material& material)
-{
-    return (material.flags & gpu::kMaterialUnlit) == 0 && luminance(material.emission) > 0;
+            .yield = yield};
 }
 
 std::vector<Candidate> collect(const SceneData& scene)
 {
-    const double radius = sceneRadius(scene.mesh);
     std::vector<Candidate> candidates;
     for (const PunctualLight& light : scene.lights)
-    {
-        candidates.push_back(punctual(light, radius));
-        candidates.back().keep = light.moves;
-        candidates.back().punctual = uint32_t(candidates.size() - 1);
-    }
+        candidates.push_back({.light = punctual(light), .keep = light.moves, .punctual = uint32_t(candidates.size())});
+    const AnimatedMaterials animated = animatedMaterials(scene);
     for (uint32_t i = 0; i < scene.mesh.triangles.size(); ++i)
     {
-        if (emits(scene.materials[scene.mesh.materials[i]]))
-        {
-            candidates.push_back(emissiveTriangle(scene, i));
-            candidates.back().keep = i >= scene.mesh.staticTriangleCount();
-        }
+        const uint32_t index = scene.mesh.materials[i];
+        const gpu::Material& material = scene.materials[index];
+        const bool emits = luminance(material.emission) > 0;
+        if ((material.flags & gpu::kMaterialUnlit) != 0 || !(emits || animated.may_emit[index]))
+            continue;
+        Candidate candidate = emissiveTriangle(scene, i, animated.alpha[index]);
+        const bool black = luminance(candidate.yield) == 0; // whatever its emission
+        candidate.keep = !black && (animated.may_emit[index] || i >= scene.mesh.staticTriangleCount());
+        candidates.push_back(candidate);
     }
     if (scene.environment)
-    {
-        const double over_sphere = 4 * kPi * luminance(averageRadiance(*scene.environment));
         candidates.push_back({.light = {.p0 = {},
                                         .kind = gpu::kLightEnvironment,
                                         .p1 = {},
@@ -140,9 +134,10 @@ std::vector<Candidate> collect(const SceneData& scene)
                                         .p2 = {},
                                         .pmf = 0,
                                         .emission = {1, 1, 1},
-                                        .material = gpu::kNone},
-                              .power = kPi * radius * radius * over_sphere});
-    }
+                                        .material = gpu::kNone}});
+    const package::LightSurroundings around = surroundingsOf(scene);
+    for (Candidate& candidate : candidates)
+        candidate.power = package::lightPower(candidate.light, candidate.yield, around);
     return candidates;
 }
 
@@ -150,35 +145,6 @@ double totalPower(const std::vector<Candidate>& candidates)
 {
     return std::accumulate(candidates.begin(), candidates.end(), 0.0,
                            [](double sum, const Candidate& c) { return sum + c.power; });
-}
-bool isBeam(const Candidate& c)
-{
-    return c.light.kind == gpu::kLightDirectional || c.light.kind == gpu::kLightEnvironment;
-}
-
-/// The weight by which each light is picked: its power, except that directional and environment lights beside local ones get
-/// at most half of all samples. Their power is what falls on a disc as wide as the scene: indoors nearly all of that hits the
-/// roof, and the local lights that light the room would get next to no samples. What is dark at rest and may shine later is
-/// picked like an average light.
-std::vector<double> sampleShares(const std::vector<Candidate>& candidates)
-{
-    constexpr double kMostBeams = 0.5;
-    const double total = totalPower(candidates);
-    if (total == 0) // all of them move, and are dark at rest
-        return std::vector<double>(candidates.size(), 1 / double(candidates.size()));
-    double beams = 0, lamps = 0;
-    for (const Candidate& c : candidates)
-        (isBeam(c) ? beams : lamps) += c.power / total;
-    const bool capped = beams > kMostBeams && lamps > 0;
-    const double average = 1 / double(candidates.size());
-    const double dark = average * double(std::ranges::count(candidates, 0.0, &Candidate::power));
-    std::vector<double> shares;
-    for (const Candidate& c : candidates)
-    {
-        const double group = isBeam(c) ? kMostBeams / beams : (1 - kMostBeams) / lamps;
-        shares.push_back(c.power > 0 ? c.power / total * (capped ? group : 1) * (1 - dark) : average);
-    }
-    return shares;
 }
 } // namespace
 
@@ -191,27 +157,25 @@ LightTables buildLights(const SceneData& scene)
     tables.of_punctual.assign(scene.lights.size(), gpu::kNone);
 
     std::vector<Candidate> candidates = collect(scene);
-    const double least = totalPower(candidates) * kLeastShare;
+    const double least = totalPower(candidates) * package::kLeastPowerShare;
     std::erase_if(candidates, [&](const Candidate& c) { return !(c.power > least) && !c.keep; });
-    for (Candidate& c : candidates)
-        if (!(c.power > least))
-            c.power = 0;
     tables.total_power = float(totalPower(candidates));
+    std::vector<gpu::Light> lights;
     for (uint32_t i = 0; i < candidates.size(); ++i)
-        if (candidates[i].punctual != gpu::kNone)
-            tables.of_punctual[candidates[i].punctual] = i;
-    if (candidates.empty())
-        return tables;
-
-    const std::vector<double> shares = sampleShares(candidates);
-    for (size_t i = 0; i < candidates.size(); ++i)
     {
-        Candidate& c = candidates[i];
-        c.light.pmf = float(shares[i]);
+        const Candidate& c = candidates[i];
+        if (c.punctual != gpu::kNone)
+            tables.of_punctual[c.punctual] = i;
         tables.emissive_triangles += c.light.triangle != gpu::kNone ? 1 : 0;
-        tables.lights.push_back(c.light);
         tables.powers.push_back(float(c.power));
+        tables.yields.push_back(c.yield);
+        lights.push_back(c.light);
     }
-    tables.aliases = buildAliasTable(shares);
+    package::LightTable table(std::move(lights), tables.yields, surroundingsOf(scene));
+    table.rebuild();
+    tables.lights.assign(table.lights().begin(), table.lights().end());
+    tables.aliases.assign(table.aliases().begin(), table.aliases().end());
+    if (std::ranges::all_of(tables.yields, [](gpu::vec3 y) { return y.x == 1 && y.y == 1 && y.z == 1; }))
+        tables.yields.clear();
     return tables;
 }

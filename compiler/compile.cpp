@@ -155,6 +155,7 @@ writePackage(const CompileOptions& options, const SceneData& scene, const Bvh& b
         addChunk(chunks, package::kTexturePageChunk, textures.pages[page].texels, page);
     addChunk(chunks, package::kLightsChunk, lights.lights);
     addChunk(chunks, package::kLightAliasesChunk, lights.aliases);
+    addChunk(chunks, package::kLightYieldsChunk, lights.yields);
     addChunk(chunks, package::kCausticTargetsChunk, lights.caustic_targets);
     if (const MotionData* const motion = scene.motion.get())
     {

@@ -1,6 +1,6 @@
 // Vector arithmetic for building hierarchies and lights.
 #pragma once
-#include "format/gpu_types.h"
+#include "format/vec3d.h"
 
 #include <algorithm>
 #include <cmath>
@@ -36,10 +36,4 @@ inline gpu::vec3 min(const gpu::vec3& a, const gpu::vec3& b)
 inline gpu::vec3 max(const gpu::vec3& a, const gpu::vec3& b)
 {
     return {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)};
-}
-
-/// Rec. 709 luminance of linear RGB.
-inline float luminance(const gpu::vec3& rgb)
-{
-    return 0.2126f * rgb.x + 0.7152f * rgb.y + 0.0722f * rgb.z;
 }

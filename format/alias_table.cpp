@@ -2,6 +2,7 @@
 
 #include "format/check.h"
 
+#include <algorithm>
 #include <numeric>
 
 std::vector<gpu::AliasEntry> buildAliasTable(std::span<const double> weights)
@@ -32,11 +33,12 @@ std::vector<gpu::AliasEntry> buildAliasTable(std::span<const double> weights)
             small.push_back(rich);
         }
     }
-    // The rest differs from the mean weight by rounding only.
+    // The rest differs from the mean weight by rounding only, but for weights of 0 for which rounding has left nothing rich.
+    const auto largest = uint32_t(std::max_element(weights.begin(), weights.end()) - weights.begin());
     for (const std::vector<uint32_t>* rest : {&small, &large})
     {
         for (const uint32_t i : *rest)
-            table[i] = {1.0f, i};
+            table[i] = weights[i] > 0 ? gpu::AliasEntry{1.0f, i} : gpu::AliasEntry{0.0f, largest};
     }
     return table;
 }

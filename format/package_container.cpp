@@ -95,7 +95,7 @@ bool isKnown(uint32_t id)
                                 kPositionsChunk,      kVertexAttributesChunk,  kVertexExtrasChunk,   kMaterialsChunk,
                                 kTextureRefsChunk,    kTexturePageChunk,       kLightsChunk,         kLightAliasesChunk,
                                 kEnvironmentChunk,    kEnvironmentTexelsChunk, kCausticTargetsChunk, kMotionChunk,
-                                kMovingVerticesChunk, kInfluencesChunk,        kMorphOffsetsChunk};
+                                kMovingVerticesChunk, kInfluencesChunk,        kMorphOffsetsChunk,   kLightYieldsChunk};
     return std::find(kKnown.begin(), kKnown.end(), id) != kKnown.end();
 }
 

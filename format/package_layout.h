@@ -59,16 +59,19 @@ inline constexpr uint32_t kLightAliasesChunk = fourcc("LALS");      // gpu::Alia
 inline constexpr uint32_t kEnvironmentChunk = fourcc("ENVR");       // float[4][width * height]
 inline constexpr uint32_t kEnvironmentTexelsChunk = fourcc("EIMP"); // gpu::EnvironmentTexel[importance w * h]
 inline constexpr uint32_t kCausticTargetsChunk = fourcc("CTGT");    // gpu::CausticTarget[], may be absent
-// Since version 3.1; a package has them where something moves. Without them it shows the same at rest.
+// Since version 3.1; a package has them where something moves, the yields where some are not 1. Without them it shows the
+// same at rest.
 inline constexpr uint32_t kMotionChunk = fourcc("MOTN");         // FlatBuffer lumicut.fb.Motion
 inline constexpr uint32_t kMovingVerticesChunk = fourcc("MVTX"); // gpu::MovingVertex[], of the last vertices of VPOS
 inline constexpr uint32_t kInfluencesChunk = fourcc("MINF");     // gpu::Influence[]
+inline constexpr uint32_t kLightYieldsChunk = fourcc("LYLD");    // gpu::vec3[light count], may be absent
 inline constexpr uint32_t kMorphOffsetsChunk = fourcc("MMRF");   // gpu::MorphOffset[], may be absent
 
 /// Whether a reader that does not know a chunk must refuse the file.
 constexpr bool isRequired(uint32_t id)
 {
-    return id != kMotionChunk && id != kMovingVerticesChunk && id != kInfluencesChunk && id != kMorphOffsetsChunk;
+    return id != kMotionChunk && id != kMovingVerticesChunk && id != kInfluencesChunk && id != kMorphOffsetsChunk &&
+           id != kLightYieldsChunk;
 }
 
 struct ChunkEntry

@@ -111,6 +111,10 @@ std::span<const gpu::AliasEntry> Package::lightAliases() const
 {
     return state_->contents.light_aliases;
 }
+std::span<const gpu::vec3> Package::lightYields() const
+{
+    return state_->contents.light_yields;
+}
 std::span<const gpu::EnvironmentTexel> Package::environmentTexels() const
 {
     return state_->contents.environment_texels;

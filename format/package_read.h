@@ -38,6 +38,8 @@ public:
     std::span<const gpu::TextureRef> textureRefs() const;
     std::span<const gpu::Light> lights() const;
     std::span<const gpu::AliasEntry> lightAliases() const;
+    std::span<const gpu::vec3>
+    lightYields() const; // by light, or none: what texture and alpha leave of the emission is all
     std::span<const gpu::EnvironmentTexel> environmentTexels() const;
     std::span<const gpu::vec4> environmentMap() const; // RGBA32F, empty without environment
     std::span<const gpu::CausticTarget> causticTargets() const;

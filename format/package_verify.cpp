@@ -140,6 +140,7 @@ Status readArrays(const Container& container, Contents& contents)
                           readArray(container, kTextureRefsChunk, optional, contents.texture_refs),
                           readArray(container, kLightsChunk, optional, contents.lights),
                           readArray(container, kLightAliasesChunk, optional, contents.light_aliases),
+                          readArray(container, kLightYieldsChunk, optional, contents.light_yields),
                           readArray(container, kEnvironmentChunk, optional, contents.environment_map),
                           readArray(container, kEnvironmentTexelsChunk, optional, contents.environment_texels),
                           readArray(container, kCausticTargetsChunk, optional, contents.caustic_targets),

@@ -45,6 +45,7 @@ struct Contents
     std::span<const gpu::TextureRef> texture_refs;
     std::span<const gpu::Light> lights;
     std::span<const gpu::AliasEntry> light_aliases;
+    std::span<const gpu::vec3> light_yields; // as many as lights, or none
     std::span<const gpu::EnvironmentTexel> environment_texels;
     std::span<const gpu::vec4> environment_map;
     std::span<const gpu::CausticTarget> caustic_targets;

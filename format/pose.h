@@ -4,6 +4,7 @@
 #include "format/gpu_scene.h"
 #include "format/package_read.h"
 
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -41,6 +42,24 @@ struct Pose
     std::vector<PosedMaterial> materials; // those that channels of the clip set
 };
 
+/// Makes poses of a package that has motion, one after the other. References are to the last one that it has made.
+class Poser
+{
+public:
+    /// @param package borrowed
+    explicit Poser(const Package& package);
+    ~Poser();
+
+    /// As poseAt() and poseAtRest() make them; without allocations from the second one on.
+    const Pose& at(std::optional<uint32_t> clip, double seconds);
+    const Pose& atRest();
+
+private:
+    class Tables;
+    std::unique_ptr<Tables> tables_;
+    Pose pose_;
+};
+
 /// The pose of a package that has motion, at a time of one of its clips.
 /// @param clip    index into Motion.clips; none: all clips at once, later ones win
 /// @param seconds clamped to each channel's keys; callers wrap it for loops
@@ -48,4 +67,7 @@ Pose poseAt(const Package& package, std::optional<uint32_t> clip, double seconds
 
 /// The pose of the package's static geometry: nodes as the file shows them at rest.
 Pose poseAtRest(const Package& package);
+
+/// Where a moving vertex is, in single precision; the slow way, for few of them. @param vertex into Package::movingVertices()
+gpu::vec3 posedPosition(const Package& package, const Pose& pose, uint32_t vertex);
 } // namespace package

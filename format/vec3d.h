@@ -34,6 +34,12 @@ struct Vec3d // its functions are friends, so that braced lists of floats never 
     friend gpu::vec3 toFloat(const Vec3d& a) { return {float(a.x), float(a.y), float(a.z)}; }
 };
 
+/// Rec. 709 luminance of linear RGB.
+inline float luminance(const gpu::vec3& rgb)
+{
+    return 0.2126f * rgb.x + 0.7152f * rgb.y + 0.0722f * rgb.z;
+}
+
 inline Vec3d toDouble(gpu::vec3 a)
 {
     return {a.x, a.y, a.z};

@@ -86,6 +86,11 @@ Status verifyLights(const Contents& contents)
     }
     if (contents.light_aliases.size() != contents.lights.size())
         return invalid("chunk LALS: {} entries for {} lights", contents.light_aliases.size(), contents.lights.size());
+    if (!contents.light_yields.empty() && contents.light_yields.size() != contents.lights.size())
+        return invalid("chunk LYLD: {} entries for {} lights", contents.light_yields.size(), contents.lights.size());
+    for (size_t i = 0; i < contents.light_yields.size(); ++i)
+        if (!isWithin(contents.light_yields[i], 0, 1))
+            return invalid("chunk LYLD: entry {} is not within 0 and 1", i);
     if (contents.lights.empty())
         return Success{};
     return verifyAliasTable("LALS", contents.lights.size(),

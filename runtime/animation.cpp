@@ -18,7 +18,8 @@ std::vector<std::string> clipNames(const package::Package& package)
 } // namespace
 
 Animation::Animation(const Device& device, SceneGpu& scene, const package::Package& package)
-    : package_(package), names_(clipNames(package)), stage_(device, scene, package), pose_(package::poseAtRest(package))
+    : package_(package), names_(clipNames(package)), stage_(device, scene, package), poser_(package),
+      pose_(&poser_.atRest())
 {
 }
 
@@ -44,6 +45,15 @@ Result<AnimationChoice> Animation::choose(const std::string& name) const
                  fmt::format("there is no animation '{}'; the package has {}all and none", name, all)};
 }
 
+AnimationChoice Animation::after(AnimationChoice choice) const
+{
+    using What = AnimationChoice::What;
+    if (choice.what == What::kAll || (choice.what == What::kNone && names_.empty()))
+        return {What::kNone};
+    const uint32_t next = choice.what == What::kNone ? 0 : choice.clip + 1;
+    return next < names_.size() ? AnimationChoice{What::kClip, next} : AnimationChoice{What::kAll};
+}
+
 double Animation::duration(AnimationChoice choice) const
 {
     double longest = 0;
@@ -61,15 +71,14 @@ void Animation::record(Recorder& rec, AnimationChoice choice, double seconds)
         return; // as in the package, to the bit
     has_moved_ = true;
     const auto clip = choice.what == AnimationChoice::What::kClip ? std::optional(choice.clip) : std::nullopt;
-    pose_ = choice.what == AnimationChoice::What::kNone ? package::poseAtRest(package_)
-                                                        : package::poseAt(package_, clip, seconds);
-    stage_.record(rec, pose_);
+    pose_ = choice.what == AnimationChoice::What::kNone ? &poser_.atRest() : &poser_.at(clip, seconds);
+    stage_.record(rec, *pose_);
 }
 
 Camera Animation::posed(size_t index, Camera camera) const
 {
-    const auto posed = std::ranges::find(pose_.cameras, uint32_t(index), &package::PosedCamera::index);
-    if (posed == pose_.cameras.end())
+    const auto posed = std::ranges::find(pose_->cameras, uint32_t(index), &package::PosedCamera::index);
+    if (posed == pose_->cameras.end())
         return camera;
     camera.position = posed->position;
     camera.forward = posed->forward;
@@ -77,6 +86,12 @@ Camera Animation::posed(size_t index, Camera camera) const
     camera.vertical_fov = posed->vertical_fov;
     camera.orthographic_height = posed->orthographic_height;
     return camera;
+}
+
+void Playback::step(double by, double duration)
+{
+    plays = false;
+    seconds = std::clamp(seconds + by, 0.0, duration);
 }
 
 void Playback::advance(double real, double duration)

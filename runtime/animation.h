@@ -28,6 +28,8 @@ public:
     /// @param name of a clip, its index, "all" or "none"; empty: the first clip
     /// @return kUsage naming what there is
     Result<AnimationChoice> choose(const std::string& name) const;
+    /// The next one: clip after clip, then all, then none, then the first clip.
+    AnimationChoice after(AnimationChoice choice) const;
     /// Seconds until it is over; 0 where nothing moves.
     double duration(AnimationChoice choice) const;
 
@@ -40,13 +42,16 @@ private:
     const package::Package& package_;
     std::vector<std::string> names_;
     PoseStage stage_;
-    package::Pose pose_;
+    package::Poser poser_;
+    const package::Pose* pose_; // the last one of `poser_`
     bool has_moved_ = false;
 };
 
 /// Where the playing of an animation is.
 struct Playback
 {
+    static constexpr double kFrame = 1 / 30.0; // seconds of a step
+
     AnimationChoice choice;
     double seconds = 0;
     bool plays = true;
@@ -55,4 +60,6 @@ struct Playback
 
     /// @param real seconds that have passed, @param duration of the animation, seconds
     void advance(double real, double duration);
+    /// Pauses, that much later or earlier.
+    void step(double by, double duration);
 };

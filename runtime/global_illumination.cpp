@@ -220,7 +220,7 @@ std::optional<double> GlobalIllumination::rememberedShare(const Device& device) 
     return history_ ? std::optional(history_->rememberedShare(device, width_ * height_)) : std::nullopt;
 }
 
-void GlobalIllumination::recordDirect(const Context& c) const
+void GlobalIllumination::recordDirect(const Context& c)
 {
     direct_.record(c.rec, c.rays,
                    {.points = c.surface.points,
@@ -293,6 +293,8 @@ PhotonTreeStage::Output GlobalIllumination::recordMap(const Context& c)
     const PhotonStage::Output stored = [&]
     {
         const auto scope = c.rec.scope("photons");
+        if (guide_)
+            guide_->followLights(c.rec);
         if (guide_ && !guide_->hasLearned())
             warmUp(c);
         return emitPhotons(c);

@@ -58,7 +58,7 @@ public:
 private:
     struct Context; // what the stages of one frame share
     FrameTraits traits() const;
-    void recordDirect(const Context& c) const;
+    void recordDirect(const Context& c);
     PhotonStage::Input photonInput(const Context& c) const;
     PhotonStage::Output emitPhotons(const Context& c);
     void warmUp(const Context& c);

@@ -1,8 +1,8 @@
 // Lights grouped into directional, environment and local ones, each group with an alias table: direct light samples every group.
 #pragma once
-#include "runtime/scene_gpu.h"
 #include "shaders/direct/direct.h"
 
+#include <span>
 #include <vector>
 
 enum class LightKind
@@ -28,4 +28,9 @@ struct LightGroups
 };
 
 /// Within a group, lights are picked in proportion to their pmf. Lights of pmf 0 are in no group.
-LightGroups groupLights(std::span<const LightProbability> lights);
+LightGroups groupLights(std::span<const gpu::Light> lights);
+
+/// Directional or environment: its power does not tell how much of it is visible. Otherwise it is a local light.
+LightKind lightKind(const gpu::Light& light);
+/// It comes from one place or direction.
+bool isPunctual(const gpu::Light& light);

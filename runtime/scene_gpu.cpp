@@ -135,13 +135,9 @@ bool hasSmoothLayer(const gpu::Material& material)
 Result<std::unique_ptr<SceneGpu>> SceneGpu::create(const Device& device, const package::Package& package)
 {
     std::unique_ptr<SceneGpu> scene(new SceneGpu(device));
-    for (const gpu::Light& light : package.lights())
-    {
-        scene->light_probabilities_.push_back({.kind = light.kind, .pmf = light.pmf});
-        scene->emitters_.lights.push_back(light);
-    }
+    scene->lights_.emplace(device, package);
     for (const gpu::Material& material : package.materials())
-        scene->emitters_.emissions.push_back(material.emission);
+        scene->emissions_.push_back(material.emission);
     std::optional<Error> too_large;
     const auto fits = [&](const char* name, auto data, uint64_t limit)
     {
@@ -199,22 +195,23 @@ SceneGpu::~SceneGpu()
     vkDestroySampler(device_.handle(), environment_sampler_, nullptr);
 }
 
-void SceneGpu::setLight(Recorder& rec, uint32_t index, const gpu::Light& light)
+void SceneGpu::setLights(Recorder& rec, std::span<const ChangedLight> changed)
 {
-    check(index < info_.light_count, "light {} of {}", index, info_.light_count);
+    if (changed.empty())
+        return;
     ++version_.lights;
-    emitters_.lights[index] = light;
-    rec.write(buffers_[gpu::kLightsBinding - gpu::kBvhNodesBinding], index * sizeof(light),
-              std::as_bytes(std::span(&light, 1)));
+    lights_->set(rec, changed, buffer(gpu::kLightsBinding), buffer(gpu::kLightAliasesBinding));
 }
 
-void SceneGpu::setLightEmission(Recorder& rec, uint32_t index, gpu::vec3 emission)
+void SceneGpu::setLight(Recorder& rec, uint32_t index, const gpu::Light& light)
 {
-    check(index < info_.light_count, "light {} of {}", index, info_.light_count);
-    ++version_.lights;
-    emitters_.lights[index].emission = emission;
-    rec.write(buffer(gpu::kLightsBinding), index * sizeof(gpu::Light) + offsetof(gpu::Light, emission),
-              std::as_bytes(std::span(&emission, 1)));
+    const ChangedLight changed{index, light};
+    setLights(rec, std::span(&changed, 1));
+}
+
+Emitters SceneGpu::emitters() const
+{
+    return {.lights = {lights().begin(), lights().end()}, .emissions = emissions_};
 }
 
 void SceneGpu::setEmission(Recorder& rec, uint32_t index, gpu::vec3 emission)
@@ -223,7 +220,7 @@ void SceneGpu::setEmission(Recorder& rec, uint32_t index, gpu::vec3 emission)
     check((index + 1) * sizeof(gpu::Material) <= materials.size(), "material {} of {} bytes of them", index,
           materials.size());
     ++version_.lights;
-    emitters_.emissions[index] = emission;
+    emissions_[index] = emission;
     rec.write(materials, index * sizeof(gpu::Material) + offsetof(gpu::Material, emission),
               std::as_bytes(std::span(&emission, 1)));
 }
@@ -234,7 +231,7 @@ void SceneGpu::setMaterial(Recorder& rec, uint32_t index, const gpu::Material& m
     check((index + 1) * sizeof(material) <= materials.size(), "material {} of {} bytes of them", index,
           materials.size());
     ++version_.materials;
-    emitters_.emissions[index] = material.emission;
+    emissions_[index] = material.emission;
     rec.write(materials, index * sizeof(material), std::as_bytes(std::span(&material, 1)));
 }
 

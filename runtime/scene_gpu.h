@@ -3,20 +3,11 @@
 #include "format/package_read.h"
 #include "runtime/frame/light_range.h"
 #include "runtime/gpu/gpu.h"
+#include "runtime/scene_lights.h"
 
 #include <array>
 #include <memory>
 #include <vector>
-
-struct LightProbability // of the scene's power
-{
-    uint32_t kind; // gpu::kLight*
-    float pmf;
-
-    /// Directional or environment: its power does not tell how much of it is visible. Otherwise it is a local light.
-    bool isInfinite() const { return kind == gpu::kLightDirectional || kind == gpu::kLightEnvironment; }
-    bool isPunctual() const { return kind < gpu::kLightTriangle; }
-};
 
 /// Each grows when something of the scene changes: what was made under another version is out of date.
 struct SceneVersion
@@ -47,10 +38,10 @@ public:
     bool reflectsRoughly() const { return reflects_roughly_; }
     /// Some material is a mirror over something else: glass, or a smooth layer. What textures say of it is left out.
     bool hasSmoothLayers() const { return has_smooth_layers_; }
-    /// Replaces light `index` from the next kernel of `rec` on; with the kind and pmf it has, on which other tables rest.
+    /// Changes lights, their place, direction, colour, power, whether they are there at all, and by what probability they are
+    /// picked, from the next kernel of `rec` on. Cheaper for all at once than one by one. @param changed each of another light
+    void setLights(Recorder& rec, std::span<const ChangedLight> changed);
     void setLight(Recorder& rec, uint32_t index, const gpu::Light& light);
-    /// Replaces what light `index` emits, Light.emission, from the next kernel of `rec` on.
-    void setLightEmission(Recorder& rec, uint32_t index, gpu::vec3 emission);
     /// Replaces what material `index` emits, W/(m^2 sr) before its texture, from the next kernel of `rec` on. Of a surface
     /// whose triangles are lights those are to be replaced too.
     void setEmission(Recorder& rec, uint32_t index, gpu::vec3 emission);
@@ -68,9 +59,11 @@ public:
     /// Some of its geometry can move.
     bool canMove() const { return info_.first_moving_slot != gpu::kNone; }
     /// As they were set last.
-    const Emitters& emitters() const { return emitters_; }
-    /// By light index.
-    std::span<const LightProbability> lightProbabilities() const { return light_probabilities_; }
+    Emitters emitters() const;
+    /// By index, as they were set last, with the probabilities by which they are picked now.
+    std::span<const gpu::Light> lights() const { return lights_->lights(); }
+    /// Grows when those probabilities change: tables made of them are out of date.
+    uint64_t lightTableVersion() const { return lights_->tableVersion(); }
     /// Some light has an extent, so that a ray may find it: an emissive triangle or an environment.
     bool hasAreaLights() const { return hasFeature(gpu::kFeatureTriangleLights | gpu::kFeatureEnvironment); }
 
@@ -81,9 +74,9 @@ private:
 
     const Device& device_;
     gpu::SceneInfo info_{};
-    std::vector<LightProbability> light_probabilities_;
+    std::optional<SceneLights> lights_;
+    std::vector<gpu::vec3> emissions_; // by material
     SceneVersion version_;
-    Emitters emitters_;
     uint32_t features_ = 0; // kFeature*
     std::array<Constant, 2> constants_{};
     bool reflects_roughly_ = false;

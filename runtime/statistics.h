@@ -45,6 +45,6 @@ struct Statistics
     Status writeJson(const std::filesystem::path& path) const;
 
 private:
-    static constexpr size_t kMeasuredFrames = 10000; // enough for percentiles; a window may stay open for days
+    static constexpr size_t kMeasuredFrames = 1000; // enough for percentiles; a window may stay open for days
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };

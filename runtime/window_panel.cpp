@@ -121,19 +121,15 @@ void chooseAnimation(std::span<const std::string> clips, Playback& playback)
 
 void editPlayback(const PanelFacts& facts, Playback& playback)
 {
-    constexpr double kStep = 1 / 30.0; // seconds
     ImGui::PushItemWidth(ImGui::GetFontSize() * 10);
     chooseAnimation(facts.clips, playback);
     if (ImGui::Button(playback.plays ? "pause" : "play"))
         playback.plays = !playback.plays;
-    for (const auto& [label, step] : {std::pair{"<", -kStep}, std::pair{">", kStep}})
+    for (const auto& [label, step] : {std::pair{"<", -Playback::kFrame}, std::pair{">", Playback::kFrame}})
     {
         ImGui::SameLine();
         if (ImGui::Button(label))
-        {
-            playback.plays = false;
-            playback.seconds = std::clamp(playback.seconds + step, 0.0, facts.duration);
-        }
+            playback.step(step, facts.duration);
     }
     ImGui::SameLine();
     ImGui::Checkbox("loop", &playback.loops);
@@ -165,10 +161,11 @@ PanelActions drawPanel(const PanelFacts& facts, Settings& settings, Mode& mode, 
     ImGui::Separator();
     actions.camera = chooseCamera(facts.cameras);
     ImGui::Separator();
-    text(fmt::format(
-        "WASD QE fly at {:.3g} m/s (wheel, Shift)\n"
-        "drag looks, 1-9 cameras\nR records a path, Space pauses animations\nF1 panel, F12 screenshot, Esc quits",
-        facts.speed));
+    text(
+        fmt::format("WASD QE fly at {:.3g} m/s (wheel, Shift)\n"
+                    "drag looks, 1-9 cameras, R records a path\nSpace pauses animations, N the next, arrows , . steps\n"
+                    "F1 panel, F12 screenshot, Esc quits",
+                    facts.speed));
     if (!facts.notice.empty())
         text(std::string(facts.notice));
     ImGui::End();

@@ -56,6 +56,7 @@ public:
 private:
     Result<bool> fitSurface();
     void useKeys();
+    bool playbackKey(int key);
     void saveScreenshot();
     void toggleRecording();
     void jump(size_t camera);
@@ -178,6 +179,29 @@ void WindowedPlayer::moveCamera(float seconds)
         recorder_->add(fly_.camera(), seconds);
 }
 
+/// @return whether it is one of the animation's
+bool WindowedPlayer::playbackKey(int key)
+{
+    constexpr double kJump = 0.1; // of the animation
+    constexpr float kSlowest = 1 / 16.0f, kFastest = 16;
+    if (key == GLFW_KEY_SPACE)
+        playback_.plays = !playback_.plays;
+    else if (key == GLFW_KEY_COMMA || key == GLFW_KEY_PERIOD)
+        playback_.step(key == GLFW_KEY_COMMA ? -Playback::kFrame : Playback::kFrame, duration());
+    else if (key == GLFW_KEY_LEFT || key == GLFW_KEY_RIGHT)
+        playback_.step(key == GLFW_KEY_LEFT ? -kJump * duration() : kJump * duration(), duration());
+    else if (key == GLFW_KEY_UP || key == GLFW_KEY_DOWN)
+        playback_.speed = std::clamp(playback_.speed * (key == GLFW_KEY_UP ? 2 : 0.5f), kSlowest, kFastest);
+    else if (key == GLFW_KEY_N)
+        playback_ = {.choice = opened_.animation->after(playback_.choice),
+                     .plays = playback_.plays,
+                     .loops = playback_.loops,
+                     .speed = playback_.speed};
+    else
+        return false;
+    return true;
+}
+
 void WindowedPlayer::useKeys()
 {
     for (const int key : window_.takeKeys())
@@ -190,8 +214,8 @@ void WindowedPlayer::useKeys()
             panel_ = !panel_;
         else if (key == GLFW_KEY_F12)
             saveScreenshot();
-        else if (key == GLFW_KEY_SPACE)
-            playback_.plays = !playback_.plays;
+        else if (opened_.animation && playbackKey(key))
+            continue;
         else if (key == GLFW_KEY_R)
             toggleRecording();
         else if (key >= GLFW_KEY_1 && key <= GLFW_KEY_9 && size_t(key - GLFW_KEY_1) < opened_.cameras.size())

@@ -11,8 +11,9 @@
 #     --frames N         timed at 1920x1080 for each; default 60; 0: none
 # The first table compares the first frame of mode gi at a time with path tracing of the scene compiled as it is at that time:
 # mean ratios of the channels, LDR-FLIP, and in brackets the ratios of the first frame of that static scene: where both are
-# alike, nothing lags. The second one is milliseconds a frame on the GPU. LUMICUT_BIN=FOLDER uses the programs there instead of
-# building. Exit code 4 where something could not be rendered, else 0, whatever the errors.
+# alike, nothing lags. The second one is milliseconds a frame: of posing on the GPU and on the CPU, and of all on the GPU.
+# LUMICUT_BIN=FOLDER uses the programs there instead of building. Exit code 4 where something could not be rendered, else 0,
+# whatever the errors.
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/bench/scenes.sh"
 
@@ -55,9 +56,9 @@ cost() {
     "$bin/lumicut-scenes" "$out" "--$1" "$2" >&2
     "$bin/lumicut-compile" "$out/$1.glb" -f -q -o "$out/$1.lumi"
     "$bin/lumicut-bench" frame "$out/$1.lumi" --animation 0 --moving nothing --size 1920x1080 --frames "$frames" |
-        awk -v kind="$1" -v count="$2" '$1 == "frame" { frame = $2 } $1 == "pose" { pose = $2 }
-            END { if (pose == "") exit 1; printf "%-8s %8d  %8.3f %8.2f\n", kind, count, pose, frame }' || fail 4 "$1 $2 failed"
+        awk -v kind="$1" -v count="$2" '$1 == "frame" { frame = $2 } $1 == "pose" { pose = $2 } /of it, posing/ { cpu = $(NF - 1) }
+            END { if (pose == "") exit 1; printf "%-8s %8d  %8.3f %8.3f %8.2f\n", kind, count, pose, cpu, frame }' || fail 4 "$1 $2 failed"
 }
-printf '\n%-8s %8s  %8s %8s\n' scene count 'pose ms' 'frame ms'
+printf '\n%-8s %8s  %8s %8s %8s\n' scene count 'pose ms' 'CPU ms' 'frame ms'
 for count in ${boxes//,/ }; do cost boxes "$count"; done
 for count in ${tubes//,/ }; do cost tube "$count"; done

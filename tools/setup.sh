@@ -19,7 +19,7 @@ packages=(
     # tools, and what several programs share
     libarchive-dev libcli11-dev libfmt-dev libopenexr-dev libssl-dev
     # tests
-    clang-14 clang-format-14 clang-tidy-14 libclang-rt-14-dev libgtest-dev python3-jsonschema vulkan-validationlayers xauth xvfb zstd
+    clang-14 clang-format-14 clang-tidy-14 libclang-rt-14-dev libgtest-dev python3-jsonschema vulkan-validationlayers xauth xdotool xvfb zstd
 )
 
 if [[ ${1-} == --list ]]; then

@@ -38,10 +38,11 @@ struct Widened
     }
 };
 
-/// But for emission.
+/// But for emission, and for how often it is picked.
 bool sameLight(gpu::Light a, const gpu::Light& b)
 {
     a.emission = b.emission;
+    a.pmf = b.pmf;
     return std::memcmp(&a, &b, sizeof(a)) == 0;
 }
 } // namespace

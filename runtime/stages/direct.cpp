@@ -1,28 +1,48 @@
 #include "runtime/stages/direct.h"
 
 #include <algorithm>
+#include <array>
 
 namespace
 {
 constexpr uint32_t kGroupSeed = 0x9e3779b9; // times the kind: groups are sampled independently of each other
+
+/// Of several lights of a kind one is chosen; those that are dark now may shine later.
+bool hasChoice(std::span<const gpu::Light> lights)
+{
+    std::array<uint32_t, 3> counts{};
+    for (const gpu::Light& light : lights)
+        ++counts[size_t(lightKind(light))];
+    return std::ranges::any_of(counts, [](uint32_t count) { return count > 1; });
 }
+} // namespace
 
 DirectStage::DirectStage(const Device& device, const SceneGpu& scene, uint32_t max_pixels, const Scratch& scratch)
-    : lights_(groupLights(scene.lightProbabilities())), sample_(device.kernel("direct/sample", scene.constants())),
+    : scene_(scene), sample_(device.kernel("direct/sample", scene.constants())),
       emitted_(device.kernel("direct/emitted", scene.constants())),
       emitter_queue_(device, "direct.emitter_queue", max_pixels, scratch),
       shadow_size_(device.array<gpu::QueueSize>("direct.shadow_size", 1)),
       shadow_rays_(device.array<gpu::ShadowRay>("direct.shadow_rays", max_pixels, scratch)),
       emitter_rays_(device.array<gpu::EmitterRay>("direct.emitter_rays", max_pixels, scratch)),
       hits_(device.texelArray<gpu::Hit>("direct.hits", max_pixels, scratch)),
-      picks_(device.upload<gpu::LightPick>("direct.picks", lights_.picks)), has_area_lights_(scene.hasAreaLights()),
-      is_noisy_(has_area_lights_ || !std::ranges::all_of(lights_.groups, &LightGroup::one_place))
+      picks_(device.array<gpu::LightPick>("direct.picks", std::max<size_t>(scene.lights().size(), 1))),
+      has_area_lights_(scene.hasAreaLights()), is_noisy_(has_area_lights_ || hasChoice(scene.lights()))
 {
 }
 
-void DirectStage::record(Recorder& rec, const RayStage& rays, const Input& in) const
+void DirectStage::followLights(Recorder& rec)
+{
+    if (table_version_ == scene_.lightTableVersion())
+        return;
+    table_version_ = scene_.lightTableVersion();
+    lights_ = groupLights(scene_.lights());
+    rec.write(picks_, 0, std::as_bytes(std::span(lights_.picks)));
+}
+
+void DirectStage::record(Recorder& rec, const RayStage& rays, const Input& in)
 {
     const auto scope = rec.scope("direct");
+    followLights(rec);
     for (uint32_t i = 0; i < in.light_sample_count; ++i)
         recordSample(rec, rays, in, i);
 }

@@ -1,8 +1,11 @@
 // Direct light at the shading points: shadow rays to sampled lights, combined with BSDF-sampled rays.
 #pragma once
 #include "runtime/light_groups.h"
+#include "runtime/scene_gpu.h"
 #include "runtime/stages/rays.h"
 #include "shaders/direct/direct.h"
+
+#include <optional>
 
 class DirectStage
 {
@@ -20,13 +23,16 @@ public:
         uint32_t first_sample;
         uint32_t seed;
     };
-    void record(Recorder& rec, const RayStage& rays, const Input& in) const;
-    bool isNoisy() const { return is_noisy_; } // otherwise direct light is exact in every frame
+    void record(Recorder& rec, const RayStage& rays, const Input& in);
+    bool isNoisy() const { return is_noisy_; } // otherwise direct light is exact in every frame, whatever lights change
 
 private:
+    void followLights(Recorder& rec);
     void recordSample(Recorder& rec, const RayStage& rays, const Input& in, uint32_t light_sample) const;
 
+    const SceneGpu& scene_;
     LightGroups lights_;
+    std::optional<uint64_t> table_version_; // that they were made of
     Kernel sample_, emitted_;
     RayQueue emitter_queue_;
     Buffer shadow_size_, shadow_rays_, emitter_rays_, hits_, picks_;

@@ -1,5 +1,7 @@
 #include "runtime/stages/guide.h"
 
+#include "runtime/light_groups.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -17,6 +19,11 @@ float estimateScale(uint32_t photon_count)
     return float(scale >= 1 ? std::floor(scale) : scale);
 }
 
+bool isInfinite(const gpu::Light& light)
+{
+    return lightKind(light) != LightKind::kLocal;
+}
+
 struct GuidedLights
 {
     gpu::GuideGroups groups{};
@@ -24,7 +31,7 @@ struct GuidedLights
         other_lights; // cumulative fraction of power by light, without those that have a group of their own
 };
 
-GuidedLights groupsOf(std::span<const LightProbability> lights)
+GuidedLights groupsOf(std::span<const gpu::Light> lights)
 {
     GuidedLights result;
     std::ranges::fill(result.groups.infinite_lights, gpu::kNone);
@@ -32,7 +39,7 @@ GuidedLights groupsOf(std::span<const LightProbability> lights)
     double others = 0;
     for (uint32_t i = 0; i < lights.size(); ++i)
     {
-        if (lights[i].isInfinite() && beams < gpu::kGuideInfiniteLights)
+        if (isInfinite(lights[i]) && beams < gpu::kGuideInfiniteLights)
         {
             result.groups.infinite_lights[beams] = i;
             result.groups.shares[beams++] = lights[i].pmf;
@@ -53,29 +60,46 @@ GuidedLights groupsOf(std::span<const LightProbability> lights)
 
 bool GuideStage::helps(const SceneGpu& scene)
 {
-    const auto lights = scene.lightProbabilities();
-    return lights.size() >= kManyLights || std::ranges::any_of(lights, &LightProbability::isInfinite);
+    return scene.lights().size() >= kManyLights || std::ranges::any_of(scene.lights(), isInfinite);
 }
 
 GuideStage::GuideStage(const Device& device, const SceneGpu& scene, uint32_t max_paths)
-    : emit_(device.kernel("guide/emit", scene.constants())), splat_(device.kernel("guide/splat", scene.constants())),
+    : scene_(scene), table_version_(scene.lightTableVersion()), emit_(device.kernel("guide/emit", scene.constants())),
+      splat_(device.kernel("guide/splat", scene.constants())),
       estimate_(device.kernel("guide/estimate", scene.constants())), learn_(device.kernel("guide/learn")),
       distribution_(device.array<gpu::GuideDistribution>("guide.distribution", 1)),
       cells_(device.array<uint32_t>("guide.cells", max_paths)),
       importance_(device.array<uint32_t>("guide.importance", gpu::kGuideBins)),
       estimates_(device.array<gpu::GuideEstimate>("guide.estimates", gpu::kGuideTotal))
 {
-    const GuidedLights lights = groupsOf(scene.lightProbabilities());
+    const GuidedLights lights = groupsOf(scene.lights());
     groups_ = device.upload<gpu::GuideGroups>("guide.groups", std::span(&lights.groups, 1));
     other_lights_ = device.upload<float>("guide.other_lights", lights.other_lights);
 }
 
+void GuideStage::followLights(Recorder& rec)
+{
+    if (table_version_ == scene_.lightTableVersion())
+        return;
+    table_version_ = scene_.lightTableVersion();
+    const GuidedLights lights = groupsOf(scene_.lights());
+    rec.write(groups_, 0, std::as_bytes(std::span(&lights.groups, 1)));
+    rec.write(other_lights_, 0, std::as_bytes(std::span(lights.other_lights)));
+    runLearn(rec, 1); // a group that had no light may have some now
+}
+
 void GuideStage::reset(Recorder& rec)
 {
+    followLights(rec);
     has_learned_ = false;
     rec.clear(estimates_);
     rec.clear(importance_);
-    rec.run(learn_, gpu::kGuideLearnSize, NoParams{},
+    runLearn(rec, 0);
+}
+
+void GuideStage::runLearn(Recorder& rec, float memory) const
+{
+    rec.run(learn_, gpu::kGuideLearnSize, gpu::LearnParams{.memory = memory},
             {{"Groups", groups_}, {"Estimates", estimates_}, {"Distribution", distribution_}});
 }
 
@@ -111,6 +135,5 @@ void GuideStage::learn(Recorder& rec, const StoredPhotons& map)
              {"Store", map.store},
              {"Importance", importance_},
              {"Estimates", estimates_}});
-    rec.run(learn_, gpu::kGuideLearnSize, NoParams{},
-            {{"Groups", groups_}, {"Estimates", estimates_}, {"Distribution", distribution_}});
+    runLearn(rec, gpu::kGuideMemory);
 }

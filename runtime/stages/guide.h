@@ -14,6 +14,9 @@ public:
 
     GuideStage(const Device& device, const SceneGpu& scene, uint32_t max_paths);
 
+    /// Brings the distribution to the probabilities by which lights are picked now; what was learned stays. Records nothing where
+    /// they are those of the last call.
+    void followLights(Recorder& rec);
     /// Forgets everything; the lights' own distributions are used until learn().
     void reset(Recorder& rec);
     bool hasLearned() const { return has_learned_; }
@@ -34,6 +37,10 @@ public:
     void learn(Recorder& rec, const StoredPhotons& map);
 
 private:
+    void runLearn(Recorder& rec, float memory) const;
+
+    const SceneGpu& scene_;
+    uint64_t table_version_;
     bool has_learned_ = false;
     Kernel emit_, splat_, estimate_, learn_;
     Buffer groups_, other_lights_, distribution_, cells_, importance_, estimates_;

@@ -97,7 +97,8 @@ bool sameGeometry(const package::Pose& a, const package::Pose& b)
 
 PoseStage::PoseStage(const Device& device, SceneGpu& scene, const package::Package& package)
     : scene_(scene), deform_(device.kernel("pose/deform")),
-      refit_(device.kernel("pose/refit", {climbConstant(device)})), follow_(device.kernel("pose/follow"))
+      refit_(device.kernel("pose/refit", {climbConstant(device)})), follow_(device.kernel("pose/follow")),
+      shapes_(package)
 {
     const auto* motion = package.motion();
     check(motion != nullptr, "a package without motion has no poses");
@@ -137,8 +138,12 @@ void PoseStage::record(Recorder& rec, const package::Pose& pose)
         uploadBones(rec, pose);
     if (moves || moved_) // once more after the last move: then what was is what is
         refit(rec);
+    changes_.restart(scene_.lights());
     setMaterials(rec, pose);
-    setLights(rec, pose);
+    changeLights(pose);
+    if (moves)
+        shapes_.change(pose, changes_);
+    scene_.setLights(rec, changes_.changed());
     if (moves)
         scene_.noteMove();
     moved_ = moves;
@@ -182,13 +187,13 @@ void PoseStage::refit(Recorder& rec) const
 }
 
 /// Lights that the last pose had likewise are left alone: each change ends what is accumulated.
-void PoseStage::setLights(Recorder& rec, const package::Pose& pose)
+void PoseStage::changeLights(const package::Pose& pose)
 {
     for (size_t i = 0; i < pose.lights.size(); ++i)
     {
         const package::PosedLight& light = pose.lights[i];
         if (!last_ || std::memcmp(&light.light, &last_->lights[i].light, sizeof(light.light)) != 0)
-            scene_.setLight(rec, light.index, light.light);
+            changes_.of(light.index) = light.light;
     }
 }
 
@@ -200,7 +205,7 @@ void PoseStage::setMaterial(Recorder& rec, uint32_t index, const gpu::Material& 
     scene_.setMaterial(rec, index, now);
     if (std::memcmp(&before.emission, &now.emission, sizeof(now.emission)) != 0)
         for (const uint32_t light : emitters_of_[index])
-            scene_.setLightEmission(rec, light, now.emission);
+            changes_.of(light).emission = now.emission;
 }
 
 /// A clip's materials; those of the clip before that it does not set are again as in the package.

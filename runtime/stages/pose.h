@@ -2,6 +2,7 @@
 #pragma once
 #include "format/pose.h"
 #include "runtime/scene_gpu.h"
+#include "runtime/stages/emitter_shapes.h"
 #include "shaders/pose/pose.h"
 
 class PoseStage
@@ -11,14 +12,14 @@ public:
     PoseStage(const Device& device, SceneGpu& scene, const package::Package& package);
 
     /// Vertices, normals, boxes, emissive triangles, caustic targets and bounds become those of the pose, and so do lights and
-    /// materials, from the next kernel of `rec` on. What triangles showed before is kept as SceneGpu::lastCorners(). Records
+    /// materials, and how often lights are picked, from the next kernel of `rec` on. What triangles showed before is kept as SceneGpu::lastCorners(). Records
     /// nothing where all this is so already.
     void record(Recorder& rec, const package::Pose& pose);
 
 private:
     void uploadBones(Recorder& rec, const package::Pose& pose);
     void refit(Recorder& rec) const;
-    void setLights(Recorder& rec, const package::Pose& pose);
+    void changeLights(const package::Pose& pose);
     void setMaterials(Recorder& rec, const package::Pose& pose);
     void setMaterial(Recorder& rec, uint32_t index, const gpu::Material& before, const gpu::Material& now);
 
@@ -34,4 +35,6 @@ private:
     bool moved_ = false;                             // in the last record()
     std::vector<gpu::Material> rest_;                // the package's
     std::vector<std::vector<uint32_t>> emitters_of_; // by material: lights that are triangles of it
+    EmitterShapes shapes_;
+    LightChanges changes_; // of the record() at hand
 };

@@ -26,7 +26,7 @@ GPU_CONST float kGuideUnguided =
     0.35f; // fraction of the photons that is emitted without guiding, which bounds the weights
 GPU_CONST float kGuideMemory = 0.75f; // weight of what was learned before, a frame
 
-struct GuideGroups // which lights they are; fixed for a scene
+struct GuideGroups // which lights they are, fixed for a scene, and how likely, which follows their power
 {
     uint infinite_lights[kGuideInfiniteLights]; // light index; kNone: no such group
     float shares[kGuideGroups];                 // of all power
@@ -54,6 +54,12 @@ struct EstimateParams
     float scale; // of the fixed-point estimates
 };
 GPU_SIZE(EstimateParams, 4);
+
+struct LearnParams
+{
+    float memory; // weight of what was learned before
+};
+GPU_SIZE(LearnParams, 4);
 
 GPU_NAMESPACE_END
 #endif

@@ -7,6 +7,7 @@
 // add up in order.
 
 layout(local_size_x = kGuideLearnSize) in;
+layout(push_constant, scalar) uniform Params { LearnParams params; };
 
 layout(set = 1, binding = 0, scalar) readonly buffer Groups { GuideGroups groups; };
 layout(set = 1, binding = 1, scalar) buffer Estimates { GuideEstimate estimates[]; };
@@ -30,7 +31,7 @@ void main()
     float own = 0.0;
     for (uint i = first; i < first + kRun; ++i)
     {
-        estimates[i].before = kGuideMemory * estimates[i].before + float(estimates[i].now);
+        estimates[i].before = params.memory * estimates[i].before + float(estimates[i].now);
         estimates[i].now = 0u;
         own += estimates[i].before;
     }

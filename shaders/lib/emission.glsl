@@ -155,7 +155,7 @@ Emission emitTriangle(Light light, float aim, bool aimed, uint target, vec2 u, v
         normal *= cosine < 0.0 ? -1.0 : 1.0;
         cosine = abs(cosine);
     }
-    if (cosine <= 0.0)
+    if (!(cosine > 0.0)) // nor NaN: of a hidden triangle
         return kNoEmission;
     vec3 emission = triangleEmission(light, weights);
     float pdf = (1.0 - aim) * cosine * kInvPi * (two_sided ? 0.5 : 1.0);

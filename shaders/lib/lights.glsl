@@ -120,7 +120,7 @@ LightSample sampleTriangle(Light light, uint index, vec3 point, vec2 u)
     float cosine = -dot(wi, twice_area) / doubled;
     if (light.kind == kLightTriangleTwoSided)
         cosine = abs(cosine);
-    if (cosine <= 0.0)
+    if (!(cosine > 0.0)) // nor NaN: of a hidden triangle
         return kNoLight;
     vec3 emission = triangleEmission(light, weights);
     float pdf = trianglePdf(index, 0.5 * doubled, distance, cosine);

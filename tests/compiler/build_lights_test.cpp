@@ -220,7 +220,7 @@ TEST(BuildLights, ASunLeavesHalfOfTheSamplesToLamps)
     EXPECT_LT(buildLights(scene).lights.at(0).pmf, 0.01);
 }
 
-TEST(BuildLights, ALightThatMayShineLaterIsPickedLikeAnAverageOne)
+TEST(BuildLights, ALightThatMayShineLaterIsThereAndNotPicked)
 {
     SceneData scene = withPunctual({.kind = gpu::kLightPoint, .intensity = {3, 3, 3}});
     scene.lights.push_back({.kind = gpu::kLightPoint, .intensity = {1, 1, 1}});
@@ -229,9 +229,41 @@ TEST(BuildLights, ALightThatMayShineLaterIsPickedLikeAnAverageOne)
     scene.lights.back().moves = true;
     const LightTables tables = buildLights(scene); // the third, dark for ever, is left out
     ASSERT_EQ(tables.lights.size(), 3u);
-    EXPECT_NEAR(tables.lights[0].pmf, 0.5, 1e-6);
-    EXPECT_NEAR(tables.lights[1].pmf, 1.0 / 6, 1e-6);
-    EXPECT_NEAR(tables.lights[2].pmf, 1.0 / 3, 1e-6);
+    EXPECT_NEAR(tables.lights[0].pmf, 0.75, 1e-6);
+    EXPECT_NEAR(tables.lights[1].pmf, 0.25, 1e-6);
+    EXPECT_EQ(tables.lights[2].pmf, 0);
+    for (uint32_t i = 0; i < 3; ++i)
+        EXPECT_NE(tables.aliases[i].threshold < 1 ? tables.aliases[i].alias : i, 2u) << "drawn by entry " << i;
+    EXPECT_EQ(tables.aliases[2].threshold, 0);
+}
+
+TEST(BuildLights, TrianglesOfMaterialsThatBeginToEmitAreLights)
+{
+    gpu::Material lamp = material();
+    lamp.flags = gpu::kMaterialAlphaMask; // and what its alpha may become is not known either
+    lamp.alpha = 0;
+    lamp.alpha_cutoff = 0.5f;
+    SceneData scene = withEmitter(lamp);
+    EXPECT_TRUE(buildLights(scene).lights.empty());
+    scene.motion = std::make_shared<MotionData>();
+    auto& clip = scene.motion->tables.clips.emplace_back(std::make_unique<lumicut::fb::ClipT>());
+    const auto channel = [&](lumicut::fb::ChannelTarget target, std::vector<float> values)
+    {
+        auto& c = clip->channels.emplace_back(std::make_unique<lumicut::fb::ChannelT>());
+        c->target = target;
+        c->index = 1;
+        c->times = {0, 1};
+        c->values = std::move(values);
+    };
+    channel(lumicut::fb::ChannelTarget::MaterialBaseColor, {1, 1, 1, 0, 1, 1, 1, 1});
+    channel(lumicut::fb::ChannelTarget::MaterialEmissive, {0, 0, 0, 0, 0, 0});
+    EXPECT_TRUE(buildLights(scene).lights.empty()) << "it stays dark";
+    channel(lumicut::fb::ChannelTarget::MaterialEmissive, {0, 0, 0, 0, 2, 0});
+    const LightTables tables = buildLights(scene);
+    ASSERT_EQ(tables.lights.size(), 1u);
+    EXPECT_EQ(tables.lights[0].triangle, 1u);
+    EXPECT_EQ(tables.lights[0].pmf, 1) << "all are dark, and equally likely";
+    EXPECT_TRUE(tables.yields.empty()) << "all of its emission counts where alpha may be anything";
 }
 
 TEST(CausticTargets, EnclosesSmoothMetalAndSolidGlassOnly)

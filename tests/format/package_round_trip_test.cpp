@@ -56,6 +56,7 @@ void expectSample(const package::Package& package, const SamplePackage& sample)
     expectSame(package.textureRefs(), sample.texture_refs);
     expectSame(package.lights(), sample.lights);
     expectSame(package.lightAliases(), sample.light_aliases);
+    expectSame(package.lightYields(), sample.light_yields);
     expectSame(package.environmentTexels(), sample.environment_texels);
     expectSame(package.environmentMap(), sample.environment_map);
     expectSame(package.causticTargets(), sample.caustic_targets);
@@ -73,7 +74,7 @@ TEST(PackageRoundTrip, EveryChunkComesBackAsWritten)
     ASSERT_TRUE(package) << package.error().message;
     expectSample(*package, sample);
     EXPECT_EQ(package->fileBytes(), bytes.size());
-    EXPECT_EQ(package->chunks().size(), 15u);
+    EXPECT_EQ(package->chunks().size(), 16u);
     EXPECT_TRUE(std::isfinite(walkPackage(*package)));
 }
 
@@ -121,6 +122,7 @@ TEST(PackageRoundTrip, OptionalChunksMayBeAbsent)
     SamplePackage sample;
     sample.lights.clear();
     sample.light_aliases.clear();
+    sample.light_yields.clear();
     sample.environment_map.clear();
     sample.environment_texels.clear();
     sample.meta.environment.reset();

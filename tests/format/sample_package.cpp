@@ -101,6 +101,7 @@ SamplePackage::SamplePackage()
     lights[1].triangle = 1;
     lights[1].material = 1;
     light_aliases = {{0.75f, 2}, {0.75f, 2}, {1, 2}};
+    light_yields = {{1, 1, 1}, {0.5f, 0.25f, 0}, {1, 1, 1}};
     environment_map.assign(8, {1, 1, 1, 1});
     environment_texels = {{1, 0, 0.5f}, {1, 1, 0.5f}};
     caustic_targets = {{{0.5f, 0.5f, 0.6f}, 0.7f}};
@@ -202,6 +203,7 @@ Result<std::vector<package::WrittenChunk>> SamplePackage::write(const std::files
         {package::kEnvironmentChunk, 0, std::as_bytes(std::span(environment_map))},
         {package::kEnvironmentTexelsChunk, 0, std::as_bytes(std::span(environment_texels))},
         {package::kCausticTargetsChunk, 0, std::as_bytes(std::span(caustic_targets))}};
+    chunks.push_back({package::kLightYieldsChunk, 0, std::as_bytes(std::span(light_yields))});
     flatbuffers::FlatBufferBuilder motion_builder;
     if (motion)
     {

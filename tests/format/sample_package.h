@@ -23,6 +23,7 @@ struct SamplePackage
     std::vector<gpu::TextureRef> texture_refs;
     std::vector<gpu::Light> lights;
     std::vector<gpu::AliasEntry> light_aliases;
+    std::vector<gpu::vec3> light_yields;
     std::vector<gpu::EnvironmentTexel> environment_texels;
     std::vector<gpu::vec4> environment_map;
     std::vector<gpu::CausticTarget> caustic_targets;

@@ -170,6 +170,8 @@ double walkPackage(const package::Package& package)
         sum += lightEmission(package, at(package.lights(), entry.alias));
     for (const gpu::Light& light : package.lights())
         sum += lightEmission(package, light);
+    for (const gpu::vec3& yield : package.lightYields())
+        sum += double(yield.x);
     for (const gpu::EnvironmentTexel& entry : package.environmentTexels())
         sum += at(package.environmentTexels(), entry.alias).threshold;
     for (const gpu::CausticTarget& target : package.causticTargets())

@@ -50,6 +50,7 @@ void savePackages(const fs::path& folder)
     SamplePackage bare;
     bare.lights.clear();
     bare.light_aliases.clear();
+    bare.light_yields.clear();
     bare.environment_map.clear();
     bare.environment_texels.clear();
     bare.meta.environment.reset();

@@ -8,11 +8,19 @@ namespace
 {
 constexpr double kAlbedo = 0.5;
 
+gpu::Light light(uint32_t kind, float pmf)
+{
+    gpu::Light light{};
+    light.kind = kind;
+    light.pmf = pmf;
+    return light;
+}
+
 TEST(LightGroups, PickEachLightByItsShareOfTheGroup)
 {
-    const std::vector<LightProbability> lights{{gpu::kLightDirectional, 0.3f}, {gpu::kLightPoint, 0.125f},
-                                               {gpu::kLightTriangle, 0.25f},   {gpu::kLightSpot, 0},
-                                               {gpu::kLightPoint, 0.125f},     {gpu::kLightEnvironment, 0.2f}};
+    const std::vector<gpu::Light> lights{light(gpu::kLightDirectional, 0.3f), light(gpu::kLightPoint, 0.125f),
+                                         light(gpu::kLightTriangle, 0.25f),   light(gpu::kLightSpot, 0),
+                                         light(gpu::kLightPoint, 0.125f),     light(gpu::kLightEnvironment, 0.2f)};
     const std::vector<double> shares{0.3, 0.2, 0.5}; // of directional, environment and local lights
     const LightGroups result = groupLights(lights);
     ASSERT_EQ(result.groups.size(), 3u);
@@ -24,7 +32,7 @@ TEST(LightGroups, PickEachLightByItsShareOfTheGroup)
         for (uint32_t i = group.first_pick; i < group.first_pick + group.pick_count; ++i)
         {
             const gpu::LightPick& pick = result.picks[i];
-            EXPECT_EQ(lights[pick.light].isInfinite(), group.kind != LightKind::kLocal);
+            EXPECT_EQ(lightKind(lights[pick.light]), group.kind);
             drawn[pick.light] += double(group.share) * double(pick.threshold) / group.pick_count;
             drawn[pick.otherwise] += double(group.share) * (1 - double(pick.threshold)) / group.pick_count;
         }
@@ -35,7 +43,7 @@ TEST(LightGroups, PickEachLightByItsShareOfTheGroup)
 
 TEST(LightGroups, ALonePunctualLightHasOnePlace)
 {
-    const auto group = [](uint32_t kind) { return groupLights(std::vector<LightProbability>{{kind, 1}}).groups.at(0); };
+    const auto group = [](uint32_t kind) { return groupLights(std::vector{light(kind, 1)}).groups.at(0); };
     EXPECT_TRUE(group(gpu::kLightPoint).one_place);
     EXPECT_TRUE(group(gpu::kLightDirectional).one_place);
     EXPECT_FALSE(group(gpu::kLightTriangle).one_place);

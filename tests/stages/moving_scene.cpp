@@ -113,6 +113,11 @@ json node(int node, const char* path)
 {
     return {{"node", node}, {"path", path}};
 }
+
+json pointer(const std::string& property)
+{
+    return {{"path", "pointer"}, {"extensions", {{"KHR_animation_pointer", {{"pointer", property}}}}}};
+}
 } // namespace
 
 struct MovingScene::Folder
@@ -154,19 +159,26 @@ MovingScene::MovingScene() : folder_(std::make_unique<Folder>())
         {{"mesh", gltf.mesh(b.quads({-0.2f, 0, -0.2f, 0.2f, 0, -0.2f, 0.2f, 0, 0.2f, -0.2f, 0, 0.2f}, shining))},
          {"translation", {0, 2, 0}}});
     b.channel(node(lamp, "translation"), {0, 2, 0, 0.3f, 2.3f, 0.2f, 0, 2.6f, 0.4f}, "VEC3");
+    b.channel(node(lamp, "scale"), {1, 1, 1, 1.5f, 1, 1.2f, 0.5f, 1, 0.4f}, "VEC3");
+
+    // Dark at rest.
+    const int glowing = gltf.material({{"emissiveFactor", {0, 0, 0}}});
+    gltf.node({{"mesh", gltf.mesh(b.quads({-2, 0, -1, -1.2f, 0, -1, -1.2f, 0.8f, -1, -2, 0.8f, -1}, glowing))}});
+    b.channel(pointer("/materials/" + std::to_string(glowing) + "/emissiveFactor"), {0, 0, 0, 1, 0.8f, 0.4f, 1, 1, 1},
+              "VEC3");
+    b.channel(pointer("/extensions/KHR_lights_punctual/lights/1/intensity"), {0, 5, 0}, "SCALAR");
 
     const int hidden = gltf.node({{"mesh", b.box(0.4f, white)},
                                   {"translation", {0, 0.3f, -1.5f}},
                                   {"scale", {-1, 1, 1}},
                                   {"extensions", {{"KHR_node_visibility", {{"visible", true}}}}}});
-    b.channel({{"path", "pointer"},
-               {"extensions",
-                {{"KHR_animation_pointer",
-                  {{"pointer", "/nodes/" + std::to_string(hidden) + "/extensions/KHR_node_visibility/visible"}}}}}},
-              {1, 0, 0}, "SCALAR", "STEP");
+    b.channel(pointer("/nodes/" + std::to_string(hidden) + "/extensions/KHR_node_visibility/visible"), {1, 0, 0},
+              "SCALAR", "STEP");
 
     gltf.json["extensions"]["KHR_lights_punctual"]["lights"] = {
-        {{"type", "spot"}, {"intensity", 20}, {"spot", {{"outerConeAngle", 0.6f}}}}};
+        {{"type", "spot"}, {"intensity", 20}, {"spot", {{"outerConeAngle", 0.6f}}}},
+        {{"type", "point"}, {"intensity", 0}}};
+    gltf.node({{"translation", {-1, 1.5f, 1.5f}}, {"extensions", {{"KHR_lights_punctual", {{"light", 1}}}}}});
     const int spot = gltf.node({{"translation", {1, 2.5f, 1}},
                                 {"rotation", {-h, 0, 0, h}},
                                 {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});

@@ -4,7 +4,8 @@
 #include <memory>
 
 /// Compiles it, into a folder that lives as long as the object. One clip of two seconds: a box turns and travels, a strip of
-/// two joints bends, a sheet with a morph target bulges, a lamp (a quad that shines) rises, a second box is hidden from
+/// two joints bends, a sheet with a morph target bulges, a lamp (a quad that shines) rises and changes its size, a quad and a
+/// point light that are dark at rest begin to shine, a second box is hidden from
 /// second 1 on, a spot light swings, a mirror ball slides.
 class MovingScene
 {

@@ -109,12 +109,13 @@ Result<ChangingLights> ChangingLights::create(const OpenedPackage& opened, Light
 
 void ChangingLights::scale(Recorder& rec, gpu::vec3 factor)
 {
+    std::vector<ChangedLight> changed;
     for (const uint32_t i : lights_)
     {
-        gpu::Light light = opened_->package.lights()[i];
-        light.emission = times(light.emission, factor);
-        opened_->scene->setLight(rec, i, light);
+        changed.push_back({i, opened_->package.lights()[i]});
+        changed.back().light.emission = times(changed.back().light.emission, factor);
     }
+    opened_->scene->setLights(rec, changed);
     for (const uint32_t i : materials_)
         opened_->scene->setEmission(rec, i, times(opened_->package.materials()[i].emission, factor));
     hash_ = XXH3_64bits_withSeed(&factor, sizeof(factor), uint64_t(change_) + 1);

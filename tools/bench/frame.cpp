@@ -19,6 +19,7 @@ struct Measurement
     std::string motion;
     StageSamples stages;
     std::vector<double> record_ms, wall_ms; // on the CPU: recording; from its begin to the finished frame
+    std::vector<double> pose_ms;            // of recording: what moves; empty where nothing does
     uint64_t device_bytes = 0;
     std::vector<RayTally::Entry> rays; // of one frame
 };
@@ -49,22 +50,27 @@ Measurement measure(const OpenedPackage& opened, PlayedAnimation& animation, con
     {
         rec.begin(scene.descriptorSet());
         const auto scope = rec.scope("frame");
+        const auto start = std::chrono::steady_clock::now();
         animation.show(rec, int32_t(frame));
+        const double pose_ms = since(start);
         if (light != gpu::kNone)
             scene.setLight(rec, light, movedLight(lights[light], scene.info(), int32_t(frame)));
         renderer.record(rec, camera_moves ? movedCamera(opened.camera, scene.info(), float(frame)) : opened.camera,
                         options.settings, 0);
         renderer.display(rec, options.settings, false);
+        return pose_ms;
     };
     for (uint32_t frame = 0; frame < options.warm_up + options.frames; ++frame)
     {
         const auto start = std::chrono::steady_clock::now();
-        record(frame);
+        const double pose_ms = record(frame);
         const double record_ms = since(start);
         const std::vector<StageTime> times = rec.submitAndWait();
         if (frame < options.warm_up)
             continue;
         result.record_ms.push_back(record_ms);
+        if (!options.animation.empty())
+            result.pose_ms.push_back(pose_ms);
         result.wall_ms.push_back(since(start));
         result.stages.add(times);
     }
@@ -117,6 +123,8 @@ void printJson(const FrameBenchOptions& options, const OpenedPackage& opened, co
                                 {"device_bytes", result.device_bytes},
                                 {"cpu_record", times(result.record_ms)},
                                 {"cpu_wall", times(result.wall_ms)}};
+    if (!result.pose_ms.empty())
+        json["cpu_pose"] = times(result.pose_ms);
     json["stages"] = nlohmann::ordered_json::array();
     for (const StageSamples::Stage& stage : result.stages.stages())
     {
@@ -149,6 +157,8 @@ void print(const FrameBenchOptions& options, const OpenedPackage& opened, const 
     for (const StageSamples::Stage& stage : result.stages.stages())
         row(stage.name, stage.ms);
     row("CPU: recording", result.record_ms);
+    if (!result.pose_ms.empty())
+        row("CPU: of it, posing", result.pose_ms);
     row("CPU: whole frame", result.wall_ms);
     fmt::print("  device memory {:.1f} MiB\n", double(result.device_bytes) / (1 << 20));
     fmt::print("  {:<20} {:>10} {:>12} {:>10}\n", "rays of a frame", "count", "Mrays/s", "floor ms");

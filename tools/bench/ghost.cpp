@@ -10,13 +10,13 @@ using Light = std::array<double, kLastFrame + 1>; // by frames since the last on
 /// Replaces every light and emission by `factor`, 0 or 1, times what the package has.
 void setLights(Recorder& rec, const OpenedPackage& opened, float factor)
 {
-    const auto lights = opened.package.lights();
-    for (uint32_t i = 0; i < lights.size(); ++i)
+    std::vector<ChangedLight> lights;
+    for (const gpu::Light& light : opened.package.lights())
     {
-        gpu::Light light = lights[i];
-        light.emission = factor * light.emission;
-        opened.scene->setLight(rec, i, light);
+        lights.push_back({uint32_t(lights.size()), light});
+        lights.back().light.emission = factor * light.emission;
     }
+    opened.scene->setLights(rec, lights);
     const auto materials = opened.package.materials();
     for (uint32_t i = 0; i < materials.size(); ++i)
         if (dot(materials[i].emission, {1, 1, 1}) > 0)
