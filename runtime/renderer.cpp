@@ -16,11 +16,12 @@ gpu::vec2 jitterOf(uint32_t frame)
     return {part(0.7548776662466927), part(0.5698402909980532)};
 }
 
-/// Frames in the mean that smooths edges. Where pixels' light changes each by itself, nothing tells the mean of it.
+/// Frames in the mean that smooths edges. Where pixels' light changes each by itself, nothing tells the mean of it: two frames let
+/// it follow. Where geometry moves, most of the picture does not change, and would lose its smooth edges for nothing.
 uint32_t mostAntialiased(const FrameInfo& frame, const Settings& settings)
 {
     constexpr uint32_t kMostWhereLightChanges = 2;
-    const bool unknown = frame.light_range && !frame.light_range->isOneFactor();
+    const bool unknown = frame.lights_alone && frame.light_range && !frame.light_range->isOneFactor();
     return unknown ? std::min(settings.antialias_frames, kMostWhereLightChanges) : settings.antialias_frames;
 }
 
@@ -92,10 +93,10 @@ FrameInfo Renderer::beginFrame(Recorder& rec, const Camera& camera, const Settin
         frame.before = last_camera_;
         if (went_on_ && goes_on)
             frame.previous = last_camera_;
+        frame.lights_alone = !scene_stands && onlyLightsChanged(last_scene_, scene_.version());
         if (frame.previous && !scene_stands)
-            frame.light_range = onlyLightsChanged(last_scene_, scene_.version())
-                                    ? lightRange(last_emitters_, scene_.emitters())
-                                    : LightRange::anything();
+            frame.light_range =
+                frame.lights_alone ? lightRange(last_emitters_, scene_.emitters()) : LightRange::anything();
         picture_seed_ =
             frame.previous ? traceSeed(seed, frame.number, 0) : seed; // means need other numbers in every frame
         went_on_ = goes_on;
