@@ -67,7 +67,7 @@ TEST_F(PkgCommand, InfoPrintsJson)
     EXPECT_EQ(json["triangles"], 5);
     EXPECT_EQ(json["lights"]["triangle"], 1);
     EXPECT_EQ(json["cameras"][0]["name"], "front");
-    EXPECT_EQ(json["chunks"].size(), 15u);
+    EXPECT_EQ(json["chunks"].size(), 16u);
     EXPECT_EQ(json["file_bytes"], std::filesystem::file_size(folder.path() / "good.lumi"));
 }
 
