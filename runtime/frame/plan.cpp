@@ -76,8 +76,7 @@ FramePlan planFrame(const Settings& settings, const FrameTraits& traits, const F
         plan.makes_map && (plan.indirect || traits.has_guide); // the guide learns the same whatever is shown
     plan.gathers_at_pixels = gathers && own_rays;
     plan.gathers_at_samples = (gathers && !own_rays) || plan.harmonics;
-    const bool has_past = frame.previous || frame.stands();
-    plan.gather_rays = has_past || !goesOn(settings) ? settings.gather_rays : mostGatherRays(settings);
+    plan.gather_rays = frame.previous || frame.stands() ? settings.gather_rays : mostGatherRays(settings);
     // Each costs rays a pass over a mostly empty queue. Without mirrors and glass there are only smooth layers over something
     // diffuse, whose third reflections are too faint to matter.
     plan.chain_depth = traits.has_mirrors ? settings.specular_depth : std::min(settings.specular_depth, 2u);

@@ -2,6 +2,7 @@
 #include "runtime/camera.h"
 #include "tests/stages/gpu_test.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <set>
@@ -25,6 +26,7 @@ struct Point
 class CameraRays : public GpuTest
 {
 protected:
+    /// By path: the kernel makes them tile by tile.
     static std::vector<gpu::Ray> generate(const gpu::CameraParams& params)
     {
         const uint32_t count = params.width * params.height * params.sample_count;
@@ -34,7 +36,9 @@ protected:
         rec.begin();
         rec.run(kernel, count, params, {{"Rays", rays}});
         rec.submitAndWait();
-        return device().download<gpu::Ray>(rays, count);
+        std::vector<gpu::Ray> made = device().download<gpu::Ray>(rays, count);
+        std::ranges::sort(made, {}, &gpu::Ray::path);
+        return made;
     }
 
     /// The first samples of a pixel as points of the unit square, exactly: an orthographic picture of 2 x 2 metres and
