@@ -260,7 +260,16 @@ FirstHits firstHits(const Device& device, const SceneGpu& scene, const Camera& c
     rec.run(generate, count, view, {{"Rays", queue.rays}});
     stage.closest(rec, queue, hits, 0);
     rec.submitAndWait();
-    return {.rays = device.download<gpu::Ray>(queue.rays, count), .hits = device.download<gpu::Hit>(hits, count)};
+    // The kernel makes them tile by tile.
+    const std::vector<gpu::Ray> rays = device.download<gpu::Ray>(queue.rays, count);
+    const std::vector<gpu::Hit> met = device.download<gpu::Hit>(hits, count);
+    FirstHits first{.rays = std::vector<gpu::Ray>(count), .hits = std::vector<gpu::Hit>(count)};
+    for (uint32_t i = 0; i < count; ++i)
+    {
+        first.rays[rays[i].path] = rays[i];
+        first.hits[rays[i].path] = met[i];
+    }
+    return first;
 }
 
 /// Whether the triangle's vertex normals make it a part of something round. The other renderer cuts light off where the facet
