@@ -29,7 +29,26 @@ set -- "$folder/cornell.lumi" --size 200x120 --mode direct --path "$folder/path.
 xvfb-run -a -s "-screen 0 1280x720x24" "$play" "$@" --frames 3 --output "$folder/path.png" 2>"$folder/play.log" ||
     fail "exit code $? with --path: $(cat "$folder/play.log")"
 "$play" "$@" --headless --frames 0-0 --spp 3 --output "$folder/path-%d.png" 2>"$folder/play.log" || fail "$(cat "$folder/play.log")"
-cmp "$folder/path.png" "$folder/path-0.png" || fail "the window does not show what --path says"
+# Pixels alone: frames of a sequence also name what they were made from.
+python3 - "$folder/path.png" "$folder/path-0.png" <<'END' || fail "the window does not show what --path says"
+import struct
+import sys
+
+
+def pixels(path):
+    with open(path, "rb") as file:
+        data = file.read()
+    at, kept = 8, b""  # after the signature
+    while at < len(data):
+        length, kind = struct.unpack(">I4s", data[at : at + 8])
+        if kind in (b"IHDR", b"IDAT"):
+            kept += data[at + 8 : at + 8 + length]
+        at += 12 + length
+    return kept
+
+
+sys.exit(pixels(sys.argv[1]) != pixels(sys.argv[2]))
+END
 
 code=0
 env -u DISPLAY -u WAYLAND_DISPLAY "$play" "$folder/cornell.lumi" 2>"$folder/none.log" || code=$?
