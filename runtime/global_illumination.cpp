@@ -114,7 +114,8 @@ GlobalIllumination::GlobalIllumination(const Device& device, const SceneGpu& sce
       samples_(device, width, height, settings.sample_count),
       gather_(device, scene, settings.sample_count, settings.gather_rays, mostGatherRays(settings), scratch_.stage()),
       interpolate_(device, settings.sample_count), glossy_(device, scene, point_count_, scratch_.stage()),
-      caustics_(device, scene),
+      caustics_(device, scene, photonCapacity(device, uint64_t(settings.caustic_photons) * kCausticBounces),
+                caustic_scratch_),
       filter_(device, scene, settings, width, height, direct_.isNoisy() || has_specular_, signals_scratch_),
       compose_(device, width * height, signals_scratch_), views_(device, scene, width * height)
 {
@@ -383,6 +384,7 @@ void GlobalIllumination::recordCaustics(const Context& c)
                      {.points = c.surface.points,
                       .radiance = light_.caustics,
                       .point_count = c.point_count,
+                      .camera = c.frame.camera,
                       .photon_count = settings.caustic_density_photons,
                       .radius = shrunkRadius(settings.caustic_radius, c.frame.accumulated)});
 }

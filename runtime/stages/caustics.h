@@ -6,18 +6,25 @@
 class CausticsStage
 {
 public:
-    CausticsStage(const Device& device, const SceneGpu& scene);
+    /// @param max_photons capacity of the map
+    CausticsStage(const Device& device, const SceneGpu& scene, uint32_t max_photons, const Scratch& scratch = {});
 
     struct Input
     {
-        const Buffer& points;   // gpu::ShadingPoint[point_count]
-        const Buffer& radiance; // vec3[point_count], grows by the caustics
-        uint32_t point_count;
-        uint32_t photon_count; // k of the density estimation
-        float radius;          // of the density estimation at most: of the distance from the viewer
+        const Buffer& points;            // gpu::ShadingPoint[point_count]
+        const Buffer& radiance;          // vec3[point_count], grows by the caustics
+        uint32_t point_count;            // a whole number of rows
+        const gpu::CameraParams& camera; // that saw them
+        uint32_t photon_count;           // k: photons that spread their light over one point, about
+        float radius;                    // over which a photon spreads it at most: of the distance from the viewer
     };
+    /// The map's tree holds the photons' discs from then on.
     void record(Recorder& rec, const PhotonTreeStage::Output& map, const Input& in) const;
 
+    /// float[map.size.count], squared radii of the discs of the last record(), metres.
+    const Buffer& supports() const { return supports_; }
+
 private:
-    Kernel apply_;
+    Kernel spread_, apply_;
+    Buffer spheres_, supports_;
 };

@@ -7,13 +7,22 @@
 
 GPU_NAMESPACE_BEGIN
 
+struct SpreadPhotonsParams
+{
+    uint photon_count; // k: a photon's light is spread over the disc of as many photons
+    float radius;      // of a disc at most: of the distance from the viewer
+    float pixel_angle; // radians from a pixel to the next; of an orthographic camera 0
+    float pixel_side;  // metres, of an orthographic camera; else 0
+    vec3 eye;
+};
+GPU_SIZE(SpreadPhotonsParams, 28);
+
 struct CausticsParams
 {
     uint point_count;
-    uint photon_count; // k of the density estimation
-    float radius;      // of the density estimation at most: of the distance from the viewer
+    uint width; // of the picture
 };
-GPU_SIZE(CausticsParams, 12);
+GPU_SIZE(CausticsParams, 8);
 
 GPU_NAMESPACE_END
 #endif
