@@ -102,18 +102,18 @@ GlobalIllumination::GlobalIllumination(const Device& device, const SceneGpu& sce
       primary_(device, scene, width * height, point_count_ > width * height, scratch_.stage()),
       view_scale_(device, scene),
       direct_(device, scene, width, height, point_count_ / (width * height), scratch_.stage()),
-      map_scratch_(scratch_.stage()), caustic_scratch_(scratch_.stage()), signals_scratch_(scratch_.stage()),
-      photons_(device, scene, PhotonKind::kGlobal, settings.photon_count,
-               photonCapacity(device, settings.photon_capacity), map_scratch_),
+      map_scratch_(photon_scratch_.stage()), caustic_scratch_(photon_scratch_.stage()),
+      signals_scratch_(scratch_.stage()), photons_(device, scene, PhotonKind::kGlobal, settings.photon_count,
+                                                   photonCapacity(device, settings.photon_capacity), map_scratch_),
       caustic_photons_(device, scene, PhotonKind::kCaustic, settings.caustic_photons,
                        photonCapacity(device, uint64_t(settings.caustic_photons) * kCausticBounces), caustic_scratch_),
       photon_tree_(device, "photon_tree", photonCapacity(device, settings.photon_capacity), map_scratch_),
       caustic_tree_(device, "caustic_tree",
                     photonCapacity(device, uint64_t(settings.caustic_photons) * kCausticBounces), caustic_scratch_),
-      legs_(device), cut_(device, scene, photonCapacity(device, settings.photon_capacity), scratch_.stage()),
+      legs_(device), cut_(device, scene, photonCapacity(device, settings.photon_capacity), photon_scratch_.stage()),
       samples_(device, width, height, settings.sample_count),
       gather_(device, scene, settings.sample_count, settings.gather_rays, mostGatherRays(settings), scratch_.stage()),
-      interpolate_(device, settings.sample_count), glossy_(device, scene, point_count_, scratch_.stage()),
+      interpolate_(device, settings.sample_count, point_count_), glossy_(device, scene, point_count_, scratch_.stage()),
       caustics_(device, scene, photonCapacity(device, uint64_t(settings.caustic_photons) * kCausticBounces),
                 caustic_scratch_),
       filter_(device, scene, settings, width, height, direct_.isNoisy() || has_specular_, signals_scratch_),
@@ -323,7 +323,8 @@ InterpolateStage::Sorted GlobalIllumination::recordGather(const Context& c, cons
         gather_.record(c.rec, c.rays, samples, map, cut, gatherInput(c), guide_ ? &*guide_ : nullptr);
     }
     const auto scope = c.rec.scope("interpolate");
-    return interpolate_.sort(c.rec, samples);
+    return interpolate_.sort(c.rec, samples,
+                             {.points = c.surface.points, .point_count = c.point_count, .width = width_});
 }
 
 void GlobalIllumination::recordIndirect(const Context& c, const InterpolateStage::Sorted& samples) const

@@ -37,6 +37,7 @@ Status playHeadless(const PlayerOptions& options)
         return status;
     statistics.pipeline_ms = opened->device->pipelineMs();
     Recorder rec(*opened->device);
+    rec.timeScopes(!options.stats.empty());
     const uint32_t sample_count = options.sample_count > 0 ? options.sample_count : std::max(options.frame_count, 1u);
     renderSamples(rec, *renderer, *opened, {.seconds = options.seconds.value_or(0)}, options.seed, sample_count,
                   statistics);

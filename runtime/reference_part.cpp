@@ -53,6 +53,7 @@ bool traceSamples(const OpenedScene& opened, const PlayerOptions& options, const
     const RayStage rays(*opened.device, *opened.scene);
     const ReferenceStage reference(*opened.device, *opened.scene, pixel_count, batch);
     Recorder rec(*opened.device);
+    rec.timeScopes(!options.stats.empty());
     const uint32_t begin = options.samples->first, end = options.samples->last + 1;
     for (uint32_t first = begin / batch * batch; first < end; first += batch)
     {

@@ -268,6 +268,7 @@ void WindowedPlayer::usePanel()
 void WindowedPlayer::showFrame(Statistics& statistics)
 {
     Recorder& rec = flights_[turn_].rec;
+    rec.timeScopes(panel_ || !options_.stats.empty());
     rec.begin(opened_.scene->descriptorSet());
     {
         const auto scope = rec.scope("frame");

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <ctime>
+#include <tuple>
 
 namespace
 {
@@ -55,11 +56,17 @@ void Recorder::begin(const SceneSet& scene)
     scopes_.clear();
     query_count_ = 0;
     staged_.assign(staging_.size(), 0);
-    read_.clear();
-    written_.clear();
+    in_order_ = times_scopes_ || trace_;
+    schedule_.restart();
+    step_ = 0;
+    kept_.clear();
+    bound_.clear();
+    bytes_.clear();
     beginCommands();
     vkCmdResetQueryPool(commands_, queries_, 0, kMaxTimestamps);
     barrier(); // whatever an earlier submission left in flight
+    if (!in_order_)
+        timestamp();
     if (trace_)
         trace_->begin();
 }
@@ -84,13 +91,14 @@ uint32_t Recorder::timestamp()
 Recorder::Scope Recorder::scope(std::string_view name)
 {
     open_scopes_.push_back(scopes_.size());
-    scopes_.push_back({.name = std::string(name), .first = timestamp(), .last = 0});
+    scopes_.push_back({.name = std::string(name), .first = in_order_ ? timestamp() : 0, .last = 0});
     return Scope(*this);
 }
 
 void Recorder::endScope()
 {
-    scopes_[open_scopes_.back()].last = timestamp();
+    if (in_order_)
+        scopes_[open_scopes_.back()].last = timestamp();
     open_scopes_.pop_back();
 }
 
@@ -111,33 +119,113 @@ void Recorder::barrier()
         .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO, .memoryBarrierCount = 1, .pMemoryBarriers = &memory};
     vkCmdPipelineBarrier2(commands_, &info);
     ++barrier_count_;
-    read_.clear();
-    written_.clear();
 }
 
-bool Recorder::conflicts(const Buffer& buffer, bool writes) const
+uint32_t Recorder::addBytes(const void* bytes, size_t count)
 {
-    const auto overlaps = [range = buffer.range()](const MemoryRange& other) { return range.overlaps(other); };
-    return std::ranges::any_of(written_, overlaps) || (writes && std::ranges::any_of(read_, overlaps));
+    const uint32_t first = uint32_t(bytes_.size());
+    const auto* data = static_cast<const std::byte*>(bytes);
+    bytes_.insert(bytes_.end(), data, data + count);
+    return first;
 }
 
-void Recorder::note(const Buffer& buffer, bool reads, bool writes)
+void Recorder::add(Command command, std::string_view name, uint64_t bytes)
 {
-    const auto add = [range = buffer.range()](std::vector<MemoryRange>& to)
+    if (!in_order_)
     {
-        if (std::ranges::find(to, range) == to.end())
-            to.push_back(range);
-    };
-    if (reads)
-        add(read_);
-    if (writes)
-        add(written_);
+        command.step = schedule_.place(accesses_);
+        kept_.push_back(command);
+    }
+    else
+    {
+        beginTraced();
+        command.step = schedule_.place(accesses_, step_);
+        if (command.step > step_)
+            barrier();
+        step_ = command.step;
+        startTraced(name, bytes);
+        emit(command);
+        endTraced(command);
+        bound_.clear();
+        bytes_.clear();
+    }
+    accesses_.clear();
+}
+
+void Recorder::emitSteps()
+{
+    std::ranges::stable_sort(kept_, {}, &Command::step);
+    for (const Command& command : kept_)
+    {
+        if (command.step > step_)
+            barrier();
+        step_ = command.step;
+        emit(command);
+    }
+    kept_.clear();
+    bound_.clear();
+    bytes_.clear();
+    schedule_.restart();
+    step_ = 0;
+}
+
+void Recorder::emit(const Command& command)
+{
+    if (command.pipeline)
+        emitDispatch(command);
+    else if (command.byte_count > 0)
+        vkCmdUpdateBuffer(commands_, command.to, command.to_offset, command.byte_count, &bytes_[command.first_byte]);
+    else if (command.from)
+    {
+        const VkBufferCopy region{
+            .srcOffset = command.from_offset, .dstOffset = command.to_offset, .size = command.size};
+        vkCmdCopyBuffer(commands_, command.from, command.to, 1, &region);
+    }
+    else
+        vkCmdFillBuffer(commands_, command.to, 0, VK_WHOLE_SIZE, command.word);
+}
+
+void Recorder::emitDispatch(const Command& command)
+{
+    std::array<VkDescriptorBufferInfo, 32> infos;
+    std::array<VkWriteDescriptorSet, 32> writes;
+    for (uint32_t i = 0; i < command.buffer_count; ++i)
+    {
+        const BoundBuffer& bound = bound_[command.first_buffer + i];
+        infos[i] = {.buffer = bound.buffer, .offset = 0, .range = VK_WHOLE_SIZE};
+        writes[i] = {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
+                     .dstBinding = bound.binding,
+                     .descriptorCount = 1,
+                     .descriptorType = bound.type,
+                     .pBufferInfo = &infos[i],
+                     .pTexelBufferView = &bound.texels};
+    }
+    vkCmdBindPipeline(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, command.pipeline);
+    if (scene_.set)
+        vkCmdBindDescriptorSets(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, command.layout, 0, 1, &scene_.set, 0,
+                                nullptr);
+    if (command.buffer_count > 0)
+        push_descriptors_(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, command.layout, 1, command.buffer_count,
+                          writes.data());
+    if (command.byte_count > 0)
+        vkCmdPushConstants(commands_, command.layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, command.byte_count,
+                           &bytes_[command.first_byte]);
+    if (command.from)
+        vkCmdDispatchIndirect(commands_, command.from, command.from_offset);
+    else if (command.groups > 0)
+        vkCmdDispatch(commands_, command.groups, 1, 1);
+}
+
+VkCommandBuffer Recorder::commands()
+{
+    emitSteps();
+    barrier();
+    return commands_;
 }
 
 void Recorder::prepare(const Kernel& kernel, const void* params, size_t param_bytes,
                        std::initializer_list<Binding> bindings, const Buffer* arguments)
 {
-    beginTraced();
     const KernelCode& code = kernel.code();
     check(param_bytes == code.push_bytes, "{}: {} bytes of parameters given, the kernel has {}", code.name, param_bytes,
           code.push_bytes);
@@ -151,15 +239,19 @@ void Recorder::prepare(const Kernel& kernel, const void* params, size_t param_by
     check(bindings.size() == code.blocks.size(), "{}: {} buffers given, the kernel's blocks are{}", code.name,
           bindings.size(), list());
 
-    std::array<VkDescriptorBufferInfo, 32> infos;
-    std::array<VkWriteDescriptorSet, 32> writes;
-    uint32_t count = 0;
-    bool hazard = arguments && conflicts(*arguments, false);
+    check(bindings.size() <= 32, "{}: {} buffers", code.name, bindings.size());
+    prepared_ = {.pipeline = kernel.pipeline(),
+                 .layout = kernel.layout(),
+                 .first_buffer = uint32_t(bound_.size()),
+                 .buffer_count = uint32_t(bindings.size()),
+                 .first_byte = addBytes(params, param_bytes),
+                 .byte_count = uint32_t(param_bytes)};
+    prepared_bytes_ = 0;
     for (const uint32_t binding : code.scene_bindings)
     {
         check(binding < scene_.buffers.size(), "{}: it reads binding {} of the scene, of {} given to begin()",
               code.name, binding, scene_.buffers.size());
-        hazard |= conflicts(*scene_.buffers[binding], false);
+        note(*scene_.buffers[binding], true, false);
     }
     for (const Binding& binding : bindings)
     {
@@ -167,44 +259,19 @@ void Recorder::prepare(const Kernel& kernel, const void* params, size_t param_by
         check(block != code.blocks.end(), "{}: no block '{}'; its blocks are{}", code.name, binding.block, list());
         check(std::ranges::count(bindings, binding.block, &Binding::block) == 1,
               "{}: block '{}' is given twice; its blocks are{}", code.name, binding.block, list());
-        hazard |= conflicts(binding.buffer, block->writes);
         check(!block->texels || binding.buffer.texels(),
               "{}: '{}' is read as texels, but buffer '{}' has no texel view", code.name, binding.block,
               binding.buffer.name());
-        infos[count] = {.buffer = binding.buffer.handle(), .offset = 0, .range = VK_WHOLE_SIZE};
-        writes[count] = {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
-                         .dstBinding = block->binding,
-                         .descriptorCount = 1,
-                         .descriptorType = block->texels ? VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER
-                                                         : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
-                         .pBufferInfo = &infos[count],
-                         .pTexelBufferView = &binding.buffer.texels()};
-        ++count;
-    }
-    if (hazard)
-        barrier();
-    for (const Binding& binding : bindings)
-    {
-        const auto block = std::ranges::find(code.blocks, binding.block, &KernelBlock::name);
         note(binding.buffer, block->reads, block->writes);
+        bound_.push_back(
+            {.binding = block->binding,
+             .type = block->texels ? VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
+             .buffer = binding.buffer.handle(),
+             .texels = binding.buffer.texels()});
+        prepared_bytes_ += binding.buffer.size();
     }
-    for (const uint32_t binding : code.scene_bindings)
-        note(*scene_.buffers[binding], true, false);
     if (arguments)
         note(*arguments, true, false);
-
-    vkCmdBindPipeline(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.pipeline());
-    if (scene_.set)
-        vkCmdBindDescriptorSets(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.layout(), 0, 1, &scene_.set, 0,
-                                nullptr);
-    if (count > 0)
-        push_descriptors_(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.layout(), 1, count, writes.data());
-    if (param_bytes > 0)
-        vkCmdPushConstants(commands_, kernel.layout(), VK_SHADER_STAGE_COMPUTE_BIT, 0, uint32_t(param_bytes), params);
-    uint64_t bytes = 0;
-    for (const Binding& binding : bindings)
-        bytes += binding.buffer.size();
-    startTraced(code.name, bytes);
 }
 
 void Recorder::flush()
@@ -232,31 +299,31 @@ void Recorder::startTraced(std::string_view name, uint64_t bytes)
         trace_->add(name, scopeName(), bytes, timestamp());
 }
 
-void Recorder::endTraced(uint32_t groups, const Buffer* size, uint64_t offset)
+void Recorder::endTraced(const Command& command)
 {
     if (!trace_)
         return;
     trace_->timestamps_.back().last = timestamp();
-    trace_->commands_.back().groups = groups;
+    trace_->commands_.back().groups = command.groups;
     if (trace_->alone_)
     {
         flush();
         trace_->commands_.back().cpu_ms = cpuMs() - cpu_begin_ms_;
     }
     const uint64_t index = trace_->commands_.size() - 1;
-    if (!size || index >= CommandTrace::kMost)
+    if (!command.pipeline || !command.from || index >= CommandTrace::kMost)
         return;
-    const VkBufferCopy region{.srcOffset = offset, .dstOffset = index * sizeof(uint32_t), .size = sizeof(uint32_t)};
-    vkCmdCopyBuffer(commands_, size->handle(), trace_->groups_.handle(), 1, &region);
+    const VkBufferCopy region{
+        .srcOffset = command.from_offset, .dstOffset = index * sizeof(uint32_t), .size = sizeof(uint32_t)};
+    vkCmdCopyBuffer(commands_, command.from, trace_->groups_.handle(), 1, &region);
 }
 
 void Recorder::dispatch(const Kernel& kernel, uint32_t thread_count)
 {
     const uint32_t groups = (thread_count + kernel.code().group_size - 1) / kernel.code().group_size;
     check(groups <= device_.limits().maxComputeWorkGroupCount[0], "{}: {} groups", kernel.code().name, groups);
-    if (groups > 0)
-        vkCmdDispatch(commands_, groups, 1, 1);
-    endTraced(groups);
+    prepared_.groups = groups;
+    add(prepared_, kernel.code().name, prepared_bytes_);
 }
 
 void Recorder::dispatchIndirect(const Kernel& kernel, const Buffer& size)
@@ -269,33 +336,22 @@ void Recorder::dispatchIndirect(const Kernel& kernel, const Buffer& size)
         ++row;
     check(row < gpu::kQueueRows, "{}: a QueueSize has no dispatch for groups of {} threads", code.name,
           code.group_size);
-    const uint64_t offset = offsetof(gpu::QueueSize, groups) + row * sizeof(gpu::uvec3);
-    vkCmdDispatchIndirect(commands_, size.handle(), offset);
-    endTraced(0, &size, offset);
+    prepared_.from = size.handle();
+    prepared_.from_offset = offsetof(gpu::QueueSize, groups) + row * sizeof(gpu::uvec3);
+    add(prepared_, code.name, prepared_bytes_);
 }
 
 void Recorder::fill(const Buffer& buffer, uint32_t word)
 {
-    beginTraced();
-    if (conflicts(buffer, true))
-        barrier();
     note(buffer, false, true);
-    startTraced("fill", buffer.size());
-    vkCmdFillBuffer(commands_, buffer.handle(), 0, VK_WHOLE_SIZE, word);
-    endTraced(0);
+    add({.to = buffer.handle(), .word = word}, "fill", buffer.size());
 }
 
 void Recorder::copy(const Buffer& from, const Buffer& to, uint64_t bytes, uint64_t to_offset)
 {
-    beginTraced();
-    if (conflicts(from, false) || conflicts(to, true))
-        barrier();
     note(from, true, false);
     note(to, false, true);
-    startTraced("copy", bytes);
-    const VkBufferCopy region{.dstOffset = to_offset, .size = bytes};
-    vkCmdCopyBuffer(commands_, from.handle(), to.handle(), 1, &region);
-    endTraced(0);
+    add({.from = from.handle(), .to = to.handle(), .to_offset = to_offset, .size = bytes}, "copy", bytes);
 }
 
 void Recorder::write(const Buffer& to, uint64_t offset, std::span<const std::byte> bytes)
@@ -304,20 +360,19 @@ void Recorder::write(const Buffer& to, uint64_t offset, std::span<const std::byt
           offset, to.name(), to.size());
     if (bytes.empty())
         return;
-    beginTraced();
-    if (conflicts(to, true))
-        barrier();
     note(to, false, true);
-    startTraced("write", bytes.size());
+    Command command{.to = to.handle(), .to_offset = offset};
     if (bytes.size() <= kMostInline)
-        vkCmdUpdateBuffer(commands_, to.handle(), offset, bytes.size(), bytes.data());
+    {
+        command.first_byte = addBytes(bytes.data(), bytes.size());
+        command.byte_count = uint32_t(bytes.size());
+    }
     else
     {
-        const auto [from, from_offset] = stage(bytes);
-        const VkBufferCopy region{.srcOffset = from_offset, .dstOffset = offset, .size = bytes.size()};
-        vkCmdCopyBuffer(commands_, from, to.handle(), 1, &region);
+        std::tie(command.from, command.from_offset) = stage(bytes);
+        command.size = bytes.size();
     }
-    endTraced(0);
+    add(command, "write", bytes.size());
 }
 
 std::pair<VkBuffer, uint64_t> Recorder::stage(std::span<const std::byte> bytes)
@@ -339,6 +394,9 @@ std::pair<VkBuffer, uint64_t> Recorder::stage(std::span<const std::byte> bytes)
 void Recorder::submit(VkSemaphore wait_for, VkSemaphore signal)
 {
     check(open_scopes_.empty(), "scope '{}' is still open", scopes_[open_scopes_.back()].name);
+    emitSteps();
+    if (!in_order_)
+        timestamp();
     const VkMemoryBarrier2 to_host{
         .sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
         .srcStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
@@ -378,6 +436,8 @@ std::vector<StageTime> Recorder::wait()
         ms.push_back(double(tick - ticks[0]) * device_.limits().timestampPeriod * 1e-6);
     if (trace_)
         trace_->end(ms);
+    if (!in_order_)
+        return {{.name = "frame", .ms = ms.back()}};
     std::vector<StageTime> times;
     for (const ScopeRecord& record : scopes_)
     {

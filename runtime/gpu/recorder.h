@@ -1,7 +1,8 @@
-// Records GPU work and submits it. Barriers come from what each kernel declares readonly and writeonly.
+// Records GPU work and submits it. Its order comes from what each kernel declares readonly and writeonly.
 #pragma once
 #include "runtime/gpu/command_trace.h"
 #include "runtime/gpu/device.h"
+#include "runtime/gpu/schedule.h"
 
 #include <initializer_list>
 #include <span>
@@ -37,6 +38,8 @@ struct NoParams
 {
 };
 
+/// Commands run in the order in which they are recorded, as far as their results can tell: where none needs another's, they run side by
+/// side, and barriers are placed between steps of such commands (schedule.h). While stages are timed or commands traced they run as recorded.
 class Recorder
 {
 public:
@@ -45,7 +48,7 @@ public:
     Recorder(const Recorder&) = delete;
     Recorder& operator=(const Recorder&) = delete;
 
-    /// Ends a named, timed region when it goes out of scope. Scopes of one name in one submission add up.
+    /// Ends a named region when it goes out of scope, timed by timeScopes(). Scopes of one name in one submission add up.
     class Scope
     {
     public:
@@ -91,16 +94,18 @@ public:
     }
 
     /// Makes all writes so far visible to the CPU, submits and waits.
-    /// @return the time of each scope, in order of first appearance
+    /// @return the time of each scope, in order of first appearance; without timeScopes() one, "frame", from begin to end
     std::vector<StageTime> submitAndWait();
 
-    /// Notes every command from the next begin() on; null ends that.
+    /// Whether scopes are timed from the next begin() on. Commands of different scopes then do not overlap, which takes longer.
+    void timeScopes(bool timed) { times_scopes_ = timed; }
+    /// Notes every command from the next begin() on; null ends that. Scopes are timed, too.
     void traceInto(CommandTrace* trace) { trace_ = trace; }
 
-    /// Barriers since begin(), that of begin() included.
+    /// Barriers since begin(), that of begin() included; steps that are still to be recorded have none yet.
     uint32_t barrierCount() const { return barrier_count_; }
-    /// The command buffer being recorded, for the swapchain and the user interface.
-    VkCommandBuffer commands() const { return commands_; }
+    /// The command buffer, for the swapchain and the user interface: what was recorded before lies in it.
+    VkCommandBuffer commands();
     /// Ends recording and submits with semaphores (either may be null); wait() then waits and returns the times.
     void submit(VkSemaphore wait_for, VkSemaphore signal);
     std::vector<StageTime> wait();
@@ -111,23 +116,48 @@ private:
     {
         return std::is_empty_v<Params> ? 0 : sizeof(Params);
     }
+    struct BoundBuffer
+    {
+        uint32_t binding;
+        VkDescriptorType type;
+        VkBuffer buffer;
+        VkBufferView texels;
+    };
+    struct Command // a dispatch where there is a pipeline; else an update with bytes, a copy between buffers, or a fill
+    {
+        uint32_t step = 0;
+        VkPipeline pipeline = VK_NULL_HANDLE;
+        VkPipelineLayout layout = VK_NULL_HANDLE;
+        uint32_t first_buffer = 0, buffer_count = 0; // in bound_
+        uint32_t first_byte = 0, byte_count = 0;     // in bytes_: push constants, or what is written
+        VkBuffer from = VK_NULL_HANDLE,
+                 to = VK_NULL_HANDLE; // `from` of a dispatch: its group counts, else `groups` are known
+        uint64_t from_offset = 0, to_offset = 0, size = 0;
+        uint32_t groups = 0, word = 0;
+    };
     void prepare(const Kernel& kernel, const void* params, size_t param_bytes, std::initializer_list<Binding> bindings,
                  const Buffer* arguments);
     void dispatch(const Kernel& kernel, uint32_t thread_count);
     void dispatchIndirect(const Kernel& kernel, const Buffer& size);
-    // Around each command, where there is a trace: before its barrier, right before it, right after it.
-    void beginTraced();
-    void startTraced(std::string_view name, uint64_t bytes);
-    /// @param size where the GPU knows the groups, at `offset` in it; else null
-    void endTraced(uint32_t groups, const Buffer* size = nullptr, uint64_t offset = 0);
-    /// Submits what is recorded so far and waits for it.
-    void flush();
-    void beginCommands();
-    bool conflicts(const Buffer& buffer, bool writes) const;
-    void note(const Buffer& buffer, bool reads, bool writes);
+    uint32_t addBytes(const void* bytes, size_t count);
+    /// Records the command, or keeps it until all of its step are known. accesses_ are its accesses; they are none afterwards.
+    /// @param bytes of the buffers that it names, for a trace
+    void add(Command command, std::string_view name, uint64_t bytes);
+    void emit(const Command& command);
+    void emitDispatch(const Command& command);
+    /// Records all commands that have been kept, step by step.
+    void emitSteps();
+    void note(const Buffer& buffer, bool reads, bool writes) { accesses_.push_back({buffer.range(), reads, writes}); }
     void barrier();
     /// Copies to memory that the GPU can copy from. @return where
     std::pair<VkBuffer, uint64_t> stage(std::span<const std::byte> bytes);
+    // Around each command, where there is a trace: before its barrier, right before it, right after it.
+    void beginTraced();
+    void startTraced(std::string_view name, uint64_t bytes);
+    void endTraced(const Command& command);
+    /// Submits what is recorded so far and waits for it.
+    void flush();
+    void beginCommands();
     void endScope();
     uint32_t timestamp();
 
@@ -140,8 +170,16 @@ private:
     SceneSet scene_;
     uint32_t barrier_count_ = 0;
 
-    // Since the last barrier. A kernel that meets a hazard puts one full barrier before itself and these start anew.
-    std::vector<MemoryRange> read_, written_;
+    bool times_scopes_ = false;
+    bool in_order_ = false; // of this submission: scopes are timed
+    Schedule schedule_;
+    uint32_t step_ = 0; // that was recorded last
+    std::vector<Command> kept_;
+    std::vector<BoundBuffer> bound_;
+    std::vector<std::byte> bytes_;
+    std::vector<Access> accesses_;
+    Command prepared_; // dispatch without its groups
+    uint64_t prepared_bytes_ = 0;
 
     // Of writes, until this submission has ended; the next one uses it again.
     std::vector<Buffer> staging_;

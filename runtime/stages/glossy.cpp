@@ -68,5 +68,7 @@ void GlossyStage::recordHarmonics(Recorder& rec, const InterpolateStage::Sorted&
              {"Radiance", in.radiance},
              {"Harmonics", harmonics},
              {"Lobes", lobes_},
-             {"Shares", shares_}});
+             {"Shares", shares_},
+             {"Nearby", samples.nearby},
+             {"NearbyCounts", samples.nearby_counts}});
 }

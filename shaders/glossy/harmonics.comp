@@ -20,6 +20,9 @@ layout(set = 1, binding = 4, scalar) buffer Radiance { vec3 radiance[]; };
 layout(set = 1, binding = 6) uniform usamplerBuffer Harmonics; // SampleHarmonics, a texel a channel
 layout(set = 1, binding = 7, scalar) readonly buffer Lobes { GlossyLobe lobes[]; };
 layout(set = 1, binding = 8, scalar) writeonly buffer Shares { float shares[]; }; // of glossy light that needs no ray
+layout(set = 1, binding = 9, scalar) readonly buffer Nearby { uint nearby[]; };
+layout(set = 1, binding = 10, scalar) readonly buffer NearbyCounts { uint nearby_counts[]; };
+#include "shaders/lib/nearby.glsl"
 #include "shaders/lib/point.glsl"
 #include "shaders/lib/sample.glsl"
 #include "shaders/lib/tree.glsl"
@@ -53,11 +56,15 @@ vec3 incidentLight(vec3 irradiance, uint slot, Reflection r)
     return irradiance * max(light, vec3(0.0));
 }
 
-/// pi times the mean radiance over the lobe. @return false where no sample reaches
-bool interpolatedLight(vec3 x, vec3 n, Reflection r, out vec3 light)
+vec4 weightedLight(SampleTexels s, vec3 x, vec3 n, Reflection r)
 {
-    light = vec3(0.0);
-    float weights = 0.0;
+    float weight = sampleWeight(s, x, n);
+    return weight > 0.0 ? weight * vec4(incidentLight(s.irradiance, s.slot, r), evenLight(r, s.normal)) : vec4(0.0);
+}
+
+vec4 searchedLight(vec3 x, vec3 n, Reflection r)
+{
+    vec4 sum = vec4(0.0);
     uint i, end;
     beginRanges(size.count);
     for (;;)
@@ -65,25 +72,32 @@ bool interpolatedLight(vec3 x, vec3 n, Reflection r, out vec3 light)
         if (nextRange(x, 0.0, i, end))
             for (;;)
             {
-                SampleTexels s = loadSample(i);
-                float weight = sampleWeight(s, x, n);
-                if (weight > 0.0)
-                {
-                    light += weight * incidentLight(s.irradiance, s.slot, r);
-                    weights += weight * evenLight(r, s.normal);
-                }
+                sum += weightedLight(loadSample(i), x, n, r);
                 if (++i == end)
                     break;
             }
         if (!hasRanges())
             break;
     }
-    light /= max(weights, 1e-20);
-    return weights > 0.0;
+    return sum;
+}
+
+/// pi times the mean radiance over the lobe. @param found of loadNearby(), @return false where no sample reaches
+bool interpolatedLight(uint found, vec3 x, vec3 n, Reflection r, out vec3 light)
+{
+    vec4 sum = vec4(0.0);
+    if (found == kNone)
+        sum = searchedLight(x, n, r);
+    else
+        for (uint k = 0u; k < found; ++k)
+            sum += weightedLight(nearby_samples[k], x, n, r);
+    light = sum.rgb / max(sum.w, 1e-20);
+    return sum.w > 0.0;
 }
 
 void main()
 {
+    uint found = loadNearby();
     uint pixel = tiledPixel(gl_GlobalInvocationID.x, params.width, params.point_count);
     if (pixel >= params.point_count)
         return;
@@ -100,7 +114,7 @@ void main()
     float cosine = max(0.0, -dot(s.normal, point.direction));
     GlossyLobe lobe = lobeAt(sqrt(b.alpha), cosine);
     vec3 light;
-    if (!interpolatedLight(s.position, s.smooth_normal, reflectionBy(lobe, s.normal, -point.direction), light))
+    if (!interpolatedLight(found, s.position, s.smooth_normal, reflectionBy(lobe, s.normal, -point.direction), light))
         return;
     vec3 reflectance = lobe.scale * mix(b.f0, b.base_color, b.metallic) + lobe.bias * mix(b.f90, 1.0, b.metallic);
     shares[pixel] = share;

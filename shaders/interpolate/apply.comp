@@ -9,7 +9,8 @@
 #include "shaders/lib/view_scale.glsl"
 
 // Indirect diffuse light of every pixel from the samples whose support holds its shading point. One thread per run of
-// kRun neighbouring pixels: they share one search, which finds what any of them needs, and what it loads.
+// kRun neighbouring pixels: they share one search, which finds what any of them needs, and what it loads. Runs of one pixel look at
+// what was found for their group.
 
 layout(constant_id = 3) const uint kRun = 1u;
 
@@ -22,7 +23,10 @@ layout(set = 1, binding = 2) uniform usamplerBuffer Samples;
 layout(set = 1, binding = 3) uniform usamplerBuffer DiffusePoints;
 layout(set = 1, binding = 4, scalar) buffer Radiance { vec3 radiance[]; };
 layout(set = 1, binding = 5, scalar) buffer Statistics { InterpolateStatistics statistics; };
+layout(set = 1, binding = 6, scalar) readonly buffer Nearby { uint nearby[]; };
+layout(set = 1, binding = 7, scalar) readonly buffer NearbyCounts { uint nearby_counts[]; };
 #include "shaders/lib/diffuse_point.glsl"
+#include "shaders/lib/nearby.glsl"
 #include "shaders/lib/sample.glsl"
 #include "shaders/lib/tree.glsl"
 
@@ -99,14 +103,15 @@ void takeNearest(vec3 low, vec3 high)
     atomicAdd(statistics.unlit, unlit);
 }
 
-void main()
+void addSample(SampleTexels s)
 {
-    uint pixel = gl_GlobalInvocationID.x * kRun;
-    if (kRun == 1u)
-        pixel = tiledPixel(pixel, params.width, params.point_count);
-    vec3 low, high;
-    if (pixel >= params.point_count || !loadRun(pixel, low, high))
-        return;
+    [[unroll]] for (uint k = 0u; k < kRun; ++k)
+        sum[k] += sampleWeight(s, x[k], n[k]) * vec4(s.irradiance, 1.0);
+}
+
+/// Adds all samples whose support reaches between low and high.
+void search(vec3 low, vec3 high)
+{
     uint i, end;
     beginRanges(size.count);
     for (;;)
@@ -114,15 +119,31 @@ void main()
         if (nextRange(low, high, 0.0, i, end))
             for (;;)
             {
-                SampleTexels s = loadSample(i);
-                [[unroll]] for (uint k = 0u; k < kRun; ++k)
-                    sum[k] += sampleWeight(s, x[k], n[k]) * vec4(s.irradiance, 1.0);
+                addSample(loadSample(i));
                 if (++i == end)
                     break;
             }
         if (!hasRanges())
             break;
     }
+}
+
+void main()
+{
+    uint found = kNone, pixel = gl_GlobalInvocationID.x * kRun;
+    if (kRun == 1u)
+    {
+        found = loadNearby();
+        pixel = tiledPixel(pixel, params.width, params.point_count);
+    }
+    vec3 low, high;
+    if (pixel >= params.point_count || !loadRun(pixel, low, high))
+        return;
+    if (found == kNone)
+        search(low, high);
+    else
+        for (uint k = 0u; k < found; ++k)
+            addSample(nearby_samples[k]);
     takeNearest(low, high);
     [[unroll]] for (uint k = 0u; k < kRun; ++k)
         if (sum[k].w > 0.0 && reflectance[k] != vec3(0.0))

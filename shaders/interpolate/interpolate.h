@@ -25,6 +25,18 @@ struct InterpolateParams
 };
 GPU_SIZE(InterpolateParams, 16);
 
+// Groups of so many pixels, tiles as far as the picture's width allows, search for samples together. Where a group's samples are more
+// than as many, as where far things show behind near ones, its pixels search each for itself.
+GPU_CONST uint kNearbySamples = 64u;
+
+struct NearbyParams
+{
+    uint point_count;
+    uint width; // of the picture, pixels
+    uint group_count;
+};
+GPU_SIZE(NearbyParams, 12);
+
 struct InterpolateStatistics
 {
     uint fallbacks; // pixels where no sample was accepted and the one of least variation was taken

@@ -20,9 +20,11 @@ uint packShared(vec3 light)
     return parts.x | parts.y << 8 | parts.z << 16 | uint(exponent + 128) << 24;
 }
 
+/// Of what packShared() gave, whose exponent is never 0.
 vec3 unpackShared(uint word)
 {
-    return vec3(word & 255u, word >> 8 & 255u, word >> 16 & 255u) * (exp2(float(word >> 24) - 128.0) / 255.0);
+    float unit = uintBitsToFloat(((word >> 24) - 1u) << 23); // 2^(exponent - 128)
+    return vec3(word & 255u, word >> 8 & 255u, word >> 16 & 255u) * (unit * (1.0 / 255.0));
 }
 
 LightPair packPair(vec3 fresh, Memory past)

@@ -47,12 +47,19 @@ SurfaceGuide loadGuide(uint pixel)
     return SurfaceGuide(uintBitsToFloat(bits.xyz), bits.w);
 }
 
-bool sameSurface(SurfaceGuide now, vec3 normal, uvec4 old, float pixel)
+bool sameSurface(SurfaceGuide now, vec3 normal, vec3 old_position, vec3 old_normal, float pixel)
 {
-    vec3 d = uintBitsToFloat(old.xyz) - now.position;
+    vec3 d = old_position - now.position;
     float rounding = 1e-5 * maxComponent(abs(now.position)); // of positions far from the origin
     return abs(dot(d, normal)) <= kOffPlane * pixel + rounding && dot(d, d) <= square(kFarAlong * pixel + rounding) &&
-           dot(octahedralToUnit(unpackSnorm4x8(old.w).xy), normal) >= kSameFacing;
+           dot(old_normal, normal) >= kSameFacing;
+}
+
+vec3 smoothNormal(uint normals) { return octahedralToUnit(unpackSnorm4x8(normals).xy); }
+
+bool sameSurface(SurfaceGuide now, vec3 normal, uvec4 old, float pixel)
+{
+    return sameSurface(now, normal, uintBitsToFloat(old.xyz), smoothNormal(old.w), pixel);
 }
 
 /// Metres from a pixel to the next, across.

@@ -14,18 +14,16 @@ const int kTilesBeside = 3, kTileStep = 2; // along either axis, and how far apa
 
 // Places that tell of a pixel's surroundings: all next to it, then every second one up to kReach along either axis. All pixels up
 // to kReach would take twice as long.
-const int kNearPlaces = 9, kPlaces = kNearPlaces + 16;
-ivec2 placeOf(int k)
-{
-    return k < kNearPlaces ? ivec2(k % 3, k / 3) - 1 : ivec2((k - kNearPlaces) % 4, (k - kNearPlaces) / 4) * 2 - kReach;
-}
+const int kNearSide = 3, kWideSide = kReach + 1, kNearPlaces = kNearSide * kNearSide;
 
-bool isNear(ivec2 offset) { return all(lessThanEqual(abs(offset), ivec2(1))); }
+const int kTilesAround = kTilesBeside * kTilesBeside;
+ivec2 tileOf(int k) { return tilePlace() + (ivec2(k % kTilesBeside, k / kTilesBeside) - kTilesBeside / 2) * kTileStep; }
 
-// The tile with as many pixels around it as its own look at.
+// The tile with as many pixels around it as its own look at, and the tiles around it.
 const int kBlockSide = int(kHistoryTileSide) + 2 * kReach, kBlockSize = kBlockSide * kBlockSide;
-shared uvec4 block_guides[kBlockSize]; // SurfaceGuide
-shared uvec4 block_pairs[kBlockSize][2]; // PixelPairs
+shared vec3 block_positions[kBlockSize], block_normals[kBlockSize]; // of SurfaceGuides
+shared uvec4 block_pairs[2][kBlockSize];                            // PixelPairs
+shared TilePairs tiles_around[kTilesAround];
 
 /// All threads of the group take part; a barrier follows.
 void loadSurroundings()
@@ -37,10 +35,19 @@ void loadSurroundings()
         bool outside = any(lessThan(place, ivec2(0))) || any(greaterThanEqual(place, size));
         int pixel = outside ? 0 : place.y * size.x + place.x;
         SurfaceGuide g = loadGuide(pixel);
-        block_guides[i] = uvec4(floatBitsToUint(outside ? vec3(kInfinity) : g.position), g.normals);
-        block_pairs[i][0] = texelFetch(Compared, 2 * pixel);
-        block_pairs[i][1] = texelFetch(Compared, 2 * pixel + 1);
+        block_positions[i] = outside ? vec3(kInfinity) : g.position;
+        block_normals[i] = smoothNormal(g.normals);
+        block_pairs[0][i] = texelFetch(Compared, 2 * pixel);
+        block_pairs[1][i] = texelFetch(Compared, 2 * pixel + 1);
     }
+    int k = int(gl_LocalInvocationID.x);
+    if (k >= kTilesAround)
+        return;
+    ivec2 tile = tileOf(k);
+    bool outside = any(lessThan(tile, ivec2(0))) || any(greaterThanEqual(tile, tileCounts()));
+    tiles_around[k] = tiles[outside ? 0 : tile.y * tileCounts().x + tile.x];
+    if (outside)
+        tiles_around[k].guide.position = vec3(kInfinity);
 }
 
 // Noise of a frame, as a part of its light, for as long as there are too few to tell.
@@ -88,6 +95,8 @@ float singleVariance(Pairs pairs, Memory past, float shared_)
 
 void reconcileMemory(inout Memory past, Pairs far, Pairs wide, Pairs near, float shared_)
 {
+    if (past.frames == 0.0)
+        return;
     Change change = Change(clamp(vec3(1.0), params.least, params.most), vec3(0.0)); // so much is sure
     past.light *= change.gain;
     float single = singleVariance(wide, past, shared_);
@@ -98,44 +107,53 @@ void reconcileMemory(inout Memory past, Pairs far, Pairs wide, Pairs near, float
 
 struct Surroundings // of a pixel, that show the same surface
 {
-    uint places; // bits, by k of placeOf()
+    uint places; // bits: the near ones row by row, then the wide ones
     uint tiles;  // bits, row by row
 };
 
-const int kTilesAround = kTilesBeside * kTilesBeside;
-ivec2 tileOf(int k) { return tilePlace() + (ivec2(k % kTilesBeside, k / kTilesBeside) - kTilesBeside / 2) * kTileStep; }
-
-int blockIndex(int k)
+/// In the block, of the first near place and of the first wide one.
+int firstNear()
 {
-    ivec2 place = inTile(gl_LocalInvocationID.x) + kReach + placeOf(k);
+    ivec2 place = inTile(gl_LocalInvocationID.x) + kReach - 1;
     return place.y * kBlockSide + place.x;
 }
-
-int tileIndex(int k) { return tileOf(k).y * tileCounts().x + tileOf(k).x; }
+int firstWide()
+{
+    ivec2 place = inTile(gl_LocalInvocationID.x);
+    return place.y * kBlockSide + place.x;
+}
 
 Surroundings surroundingsOf(uint pixel)
 {
     SurfaceGuide guide = loadGuide(pixel);
-    vec3 normal = octahedralToUnit(unpackSnorm4x8(guide.normals).xy);
+    vec3 normal = smoothNormal(guide.normals);
     float footprint = footprintAt(motions[pixel]);
     Surroundings found = Surroundings(0u, 0u);
-    for (int k = 0; k < kPlaces; ++k)
-    {
-        bool twice = k >= kNearPlaces && isNear(placeOf(k));
-        if (!twice && sameSurface(guide, normal, block_guides[blockIndex(k)], footprint))
-            found.places |= 1u << k;
-    }
+    for (int y = 0; y < kNearSide; ++y)
+        [[unroll]] for (int x = 0; x < kNearSide; ++x)
+        {
+            int i = firstNear() + y * kBlockSide + x;
+            if (sameSurface(guide, normal, block_positions[i], block_normals[i], footprint))
+                found.places |= 1u << (y * kNearSide + x);
+        }
+    for (int y = 0; y < kWideSide; ++y)
+        [[unroll]] for (int x = 0; x < kWideSide; ++x)
+        {
+            int i = firstWide() + 2 * (y * kBlockSide + x);
+            bool twice = abs(2 * y - kReach) == 1 && abs(2 * x - kReach) == 1; // a near one
+            if (!twice && sameSurface(guide, normal, block_positions[i], block_normals[i], footprint))
+                found.places |= 1u << (kNearPlaces + y * kWideSide + x);
+        }
     for (int k = 0; k < kTilesAround; ++k)
     {
-        ivec2 tile = tileOf(k);
-        if (any(lessThan(tile, ivec2(0))) || any(greaterThanEqual(tile, tileCounts())))
-            continue;
-        SurfaceGuide g = tiles[tileIndex(k)].guide;
-        if (sameSurface(guide, normal, uvec4(floatBitsToUint(g.position), g.normals), footprint))
+        SurfaceGuide g = tiles_around[k].guide;
+        if (sameSurface(guide, normal, g.position, smoothNormal(g.normals), footprint))
             found.tiles |= 1u << k;
     }
     return found;
 }
+
+const uint kDirectTerm = 0u, kIndirectTerm = 1u, kGlossyTerm = 2u, kCausticTerm = 3u; // in the order of PixelPairs
 
 void addTile(inout Pairs far, TermPairs sum)
 {
@@ -144,50 +162,59 @@ void addTile(inout Pairs far, TermPairs sum)
     far.count += sum.count;
 }
 
-const uint kDirectTerm = 0u, kIndirectTerm = 1u, kGlossyTerm = 2u, kCausticTerm = 3u; // in the order of PixelPairs
+/// Of the tiles around, whose sums of the term are `of(k)`.
+#define ADD_TILES(far, term) \
+    for (int k = 0; k < kTilesAround; ++k) \
+        if ((around.tiles >> k & 1u) != 0u) \
+            addTile(far, tiles_around[k].term);
 
-void addTile(inout Pairs far, int tile, uint term)
+struct TwoPairs // of two terms, whose words lie in one texel
 {
-    if (term == kDirectTerm)
-        addTile(far, tiles[tile].direct);
-    else if (term == kIndirectTerm)
-        addTile(far, tiles[tile].indirect);
-    else if (term == kGlossyTerm)
-        addTile(far, tiles[tile].glossy);
-    else
-        addTile(far, tiles[tile].caustics);
+    Pairs first, second;
+};
+
+void addPairs(inout TwoPairs sum, uvec4 texel)
+{
+    addPair(sum.first, texel.xy);
+    addPair(sum.second, texel.zw);
 }
 
-/// One term after the other: sums of all four at a time would take too many registers.
-void reconcileTerm(inout Memory past, Surroundings around, uint term, float shared_)
+/// Two terms at a time: sums of all four would take too many registers, one by one would load and test all places four times.
+/// @param wide of all places, @param near of the near ones among them
+void sumPlaces(Surroundings around, int texel, out TwoPairs wide, out TwoPairs near)
 {
-    if (past.frames == 0.0)
-        return;
-    Pairs far = kNoPairs, wide = kNoPairs, near = kNoPairs;
-    for (int k = 0; k < kPlaces; ++k)
-    {
-        if ((around.places >> k & 1u) == 0u)
-            continue;
-        uvec4 texel = block_pairs[blockIndex(k)][term / 2u];
-        uvec2 words = term % 2u == 0u ? texel.xy : texel.zw;
-        addPair(wide, words);
-        if (k < kNearPlaces)
-            addPair(near, words);
-    }
-    for (int k = 0; k < kTilesAround; ++k)
-        if ((around.tiles >> k & 1u) != 0u)
-            addTile(far, tileIndex(k), term);
-    reconcileMemory(past, far, wide, near, shared_);
+    wide = TwoPairs(kNoPairs, kNoPairs);
+    uint places = around.places;
+    for (int y = 0; y < kNearSide; ++y)
+        [[unroll]] for (int x = 0; x < kNearSide; ++x, places >>= 1)
+            if ((places & 1u) != 0u)
+                addPairs(wide, block_pairs[texel][firstNear() + y * kBlockSide + x]);
+    near = wide;
+    for (int y = 0; y < kWideSide; ++y)
+        [[unroll]] for (int x = 0; x < kWideSide; ++x, places >>= 1)
+            if ((places & 1u) != 0u)
+                addPairs(wide, block_pairs[texel][firstWide() + 2 * (y * kBlockSide + x)]);
 }
 
 /// Compares what the surface shows around the pixel with what it showed.
 void reconcile(inout Past past, uint pixel)
 {
     Surroundings around = surroundingsOf(pixel);
-    reconcileTerm(past.direct, around, kDirectTerm, kOwnRays);
-    reconcileTerm(past.indirect, around, kIndirectTerm, kSharedSamples);
-    reconcileTerm(past.glossy, around, kGlossyTerm, kOwnRays);
-    reconcileTerm(past.caustics, around, kCausticTerm, kSharedSamples);
+    TwoPairs wide, near;
+    sumPlaces(around, 0, wide, near);
+    Pairs far = kNoPairs;
+    ADD_TILES(far, direct)
+    reconcileMemory(past.direct, far, wide.first, near.first, kOwnRays);
+    far = kNoPairs;
+    ADD_TILES(far, indirect)
+    reconcileMemory(past.indirect, far, wide.second, near.second, kSharedSamples);
+    sumPlaces(around, 1, wide, near);
+    far = kNoPairs;
+    ADD_TILES(far, glossy)
+    reconcileMemory(past.glossy, far, wide.first, near.first, kOwnRays);
+    far = kNoPairs;
+    ADD_TILES(far, caustics)
+    reconcileMemory(past.caustics, far, wide.second, near.second, kSharedSamples);
 }
 
 #endif

@@ -249,14 +249,16 @@ protected:
                                                                      .pixel = 0}}),
                      spheres = upload<gpu::vec4>("test.spheres", {{kPoint.x, kPoint.y, kPoint.z, 1}}),
                      harmonics = device().uploadTexels<gpu::SampleHarmonics>("test.harmonics", std::vector{light});
-        const InterpolateStage interpolate(device(), 1);
+        const InterpolateStage interpolate(device(), 1, kSide * kSide);
         const GlossyStage stage(device(), scene, kSide * kSide);
         submit(scene,
                [&](Recorder& rec)
                {
                    const auto points =
                        primary.record(rec, rays, {.camera = view, .specular_depth = 1, .emission = emission});
-                   const auto sorted = interpolate.sort(rec, {.size = size, .samples = samples, .spheres = spheres});
+                   const auto sorted =
+                       interpolate.sort(rec, {.size = size, .samples = samples, .spheres = spheres},
+                                        {.points = points.points, .point_count = kSide * kSide, .width = kSide});
                    stage.recordHarmonics(rec, sorted, harmonics,
                                          {.points = points.points,
                                           .radiance = radiance,

@@ -72,16 +72,19 @@ protected:
         const Buffer size = sizeBuffer(count), on_gpu = upload("test.samples", samples),
                      supports = upload("test.spheres", spheres);
         const Buffer radiance = upload("test.radiance", std::vector<gpu::vec3>(kWidth * kHeight, before));
-        const InterpolateStage stage(device(), std::max(count, 1u));
+        const InterpolateStage stage(device(), std::max(count, 1u), kWidth * kHeight);
         submit(*scene_,
                [&](Recorder& rec)
                {
-                   stage.record(rec, stage.sort(rec, {.size = size, .samples = on_gpu, .spheres = supports}),
-                                {.diffuse_points = points_->gpu->diffuse_points,
-                                 .radiance = radiance,
-                                 .point_count = kWidth * kHeight,
-                                 .width = kWidth,
-                                 .alpha = float(kAlpha * diagonalOf(*scene_))});
+                   stage.record(
+                       rec,
+                       stage.sort(rec, {.size = size, .samples = on_gpu, .spheres = supports},
+                                  {.points = points_->gpu->points, .point_count = kWidth * kHeight, .width = kWidth}),
+                       {.diffuse_points = points_->gpu->diffuse_points,
+                        .radiance = radiance,
+                        .point_count = kWidth * kHeight,
+                        .width = kWidth,
+                        .alpha = float(kAlpha * diagonalOf(*scene_))});
                });
         return {contents<gpu::vec3>(radiance, kWidth * kHeight),
                 contents<gpu::InterpolateStatistics>(stage.statistics(), 1)[0]};

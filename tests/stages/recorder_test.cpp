@@ -58,6 +58,7 @@ protected:
     Kernel accumulate_, set_size_, dispatch_size_;
     Buffer compensation_ = zeros(); // stays 0 as long as sums are exact
     Buffer non_finite_ = device().array<uint32_t>("test.non_finite", 1);
+    Buffer other_non_finite_ = device().array<uint32_t>("test.other_non_finite", 1);
 };
 
 TEST_F(RecorderTest, OrdersReadsAfterWritesAndWritesAfterReads)
@@ -222,6 +223,7 @@ TEST_F(RecorderTest, OrdersReadsOfTheSceneAsOfAnyOtherBuffer)
         hits.push_back(device().array<gpu::Hit>("test.hits", 1));
 
     Recorder rec(device());
+    rec.timeScopes(true); // as recorded
     rec.begin(set);
     uint32_t barriers = rec.barrierCount();
     const auto more = [&] { return rec.barrierCount() - std::exchange(barriers, rec.barrierCount()); };
@@ -248,12 +250,52 @@ TEST_F(RecorderTest, OrdersReadsOfTheSceneAsOfAnyOtherBuffer)
         EXPECT_FLOAT_EQ(device().download<gpu::Hit>(hits[hit], 1)[0].t, t) << "hit " << hit;
 }
 
+TEST_F(RecorderTest, RunsWhatDoesNotDependOnEachOtherSideBySide)
+{
+    // Fibonacci numbers twice, recorded one chain after the other: as many barriers as one chain takes.
+    const Buffer other_compensation = zeros();
+    const auto chain = [&](Recorder& rec, const Buffer& even, const Buffer& odd, const Buffer& compensation)
+    {
+        for (int i = 0; i < 15; ++i)
+            for (const auto& [added, sum] : {std::pair(&odd, &even), std::pair(&even, &odd)})
+                rec.run(accumulate_, kElements, gpu::AccumulateParams{.pixel_count = kElements, .sample_count = 1},
+                        {{"Radiance", *added},
+                         {"Sum", *sum},
+                         {"Compensation", compensation},
+                         {"NonFinite", &compensation == &compensation_ ? non_finite_ : other_non_finite_}});
+    };
+    for (const bool timed : {false, true})
+    {
+        const Buffer a = zeros(), b = filled(1), c = zeros(), d = filled(1);
+        Recorder rec(device());
+        rec.timeScopes(timed);
+        rec.begin();
+        {
+            const auto scope = rec.scope("first");
+            chain(rec, a, b, compensation_);
+        }
+        {
+            const auto scope = rec.scope("second");
+            chain(rec, c, d, other_compensation);
+        }
+        const std::vector<StageTime> times = rec.submitAndWait();
+        EXPECT_EQ(rec.barrierCount(),
+                  1 + (timed ? 58u : 29u)); // begin()'s, and one before each of a chain but its first
+        EXPECT_EQ(times.size(), timed ? 2u : 1u);
+        for (const Buffer* even : {&a, &c})
+            expectAll(*even, 832040);
+        for (const Buffer* odd : {&b, &d})
+            expectAll(*odd, 1346269);
+    }
+}
+
 TEST_F(RecorderTest, WritesOfAnySizeTakeOneBarrierAndNoMemoryOnceTheyHaveBeen)
 {
     constexpr uint32_t kWords = 1'000'000, kBefore = 3;
     const Buffer to = device().array<uint32_t>("test.words", kBefore + kWords + 1);
     std::vector<uint32_t> words(kWords);
     Recorder rec(device());
+    rec.timeScopes(true); // as recorded
     uint64_t allocations = 0;
     for (uint32_t submission = 0; submission < 3; ++submission)
     {
@@ -348,6 +390,7 @@ TEST_F(RecorderTest, TimesScopesOfOneNameTogether)
 {
     const Buffer one = filled(1), sum = zeros();
     Recorder rec(device());
+    rec.timeScopes(true);
     rec.begin();
     {
         const auto whole = rec.scope("whole");

@@ -51,6 +51,7 @@ Convergence measure(const OpenedPackage& opened, const ImageF& reference, const 
     const Mode mode = options.mode == "gi" ? Mode::kGi : Mode::kReference;
     Renderer renderer(device, *opened.scene, mode, reference.width, reference.height, options.settings);
     Recorder rec(device);
+    rec.timeScopes(options.stages);
     Convergence result{.rows = emptyRows(options.frames), .stages = {}, .picture = {}};
     const auto render = [&](const Camera& camera, uint32_t seed, uint32_t sample_count)
     {

@@ -62,14 +62,24 @@ Measurement measure(const OpenedPackage& opened, PlayedAnimation& animation, con
         renderer.display(rec, options.settings, false);
         return pose_ms;
     };
-    for (uint32_t frame = 0; frame < options.warm_up + options.frames; ++frame)
+    const uint32_t end =
+        options.warm_up + 2 * options.frames; // in turn: as players show them, and with their stages timed
+    for (uint32_t frame = 0; frame < end; ++frame)
     {
+        const bool stages = frame >= options.warm_up && (frame - options.warm_up) % 2 == 1;
+        rec.timeScopes(stages);
         const auto start = std::chrono::steady_clock::now();
         const double pose_ms = record(frame);
         const double record_ms = since(start);
-        const std::vector<StageTime> times = rec.submitAndWait();
+        std::vector<StageTime> times = rec.submitAndWait();
         if (frame < options.warm_up)
             continue;
+        if (stages)
+        {
+            times[0].name = "stages in turn";
+            result.stages.add(times);
+            continue;
+        }
         result.record_ms.push_back(record_ms);
         if (!options.animation.empty())
             result.pose_ms.push_back(pose_ms);
@@ -78,7 +88,6 @@ Measurement measure(const OpenedPackage& opened, PlayedAnimation& animation, con
     }
     result.device_bytes = opened.device->allocatedBytes();
 
-    const uint32_t end = options.warm_up + options.frames;
     if (options.kernels)
         result.commands = CommandSamples::measure(*opened.device, rec, record, end, options.frames);
 

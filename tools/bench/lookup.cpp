@@ -69,6 +69,7 @@ Result<ModeResult> measure(const OpenedPackage& opened, const LookupBenchOptions
     Renderer renderer(*opened.device, *opened.scene, Mode::kGi, options.width, options.height, settings);
     renderer.placeSamplesBy(kPlacementSeed);
     Recorder rec(*opened.device);
+    rec.timeScopes(true);
     const auto render = [&](uint32_t seed)
     {
         rec.begin(opened.scene->descriptorSet());

@@ -101,6 +101,7 @@ Status measureSequence(const OpenedPackage& opened, const MotionBenchOptions& op
     Renderer renderer(*opened.device, *opened.scene, modeOf(options), options.width, options.height, options.settings);
     References references(opened, options);
     Recorder rec(*opened.device);
+    rec.timeScopes(true);
     const uint32_t term = options.settings.term;
     const bool has_caustics =
         opened.scene->info().caustic_target_count > 0 && (term == gpu::kTermAll || term == gpu::kTermCaustics);

@@ -58,6 +58,7 @@ Row measure(const Device& device, uint32_t count, Workers workers, uint32_t repe
     for (uint32_t repeat = 0; repeat < kWarmUp + repeats; ++repeat)
     {
         Recorder rec(device);
+        rec.timeScopes(true);
         rec.begin();
         const auto timed = [&](size_t kind, auto&& record)
         {

@@ -26,6 +26,7 @@ Result<RayThroughput> measureRays(const Device& device, const SceneGpu& scene, c
     for (uint32_t repeat = 0; repeat < kWarmUp + repeats; ++repeat)
     {
         Recorder rec(device);
+        rec.timeScopes(true);
         rec.begin(scene.descriptorSet());
         gpu::CameraParams view = cameraParams(camera, width, height);
         view.seed = repeat;
