@@ -110,7 +110,7 @@ GlobalIllumination::GlobalIllumination(const Device& device, const SceneGpu& sce
       photon_tree_(device, "photon_tree", photonCapacity(device, settings.photon_capacity), map_scratch_),
       caustic_tree_(device, "caustic_tree",
                     photonCapacity(device, uint64_t(settings.caustic_photons) * kCausticBounces), caustic_scratch_),
-      legs_(device), cut_(device, scene, photonCapacity(device, settings.photon_capacity), photon_scratch_.stage()),
+      legs_(device), cut_(device, scene, photonCapacity(device, settings.photon_capacity), scratch_.stage()),
       samples_(device, width, height, settings.sample_count),
       gather_(device, scene, settings.sample_count, settings.gather_rays, mostGatherRays(settings), scratch_.stage()),
       interpolate_(device, settings.sample_count, point_count_), glossy_(device, scene, point_count_, scratch_.stage()),

@@ -87,8 +87,8 @@ private:
     bool has_specular_, has_caustic_targets_, has_mirrors_;
     uint32_t point_count_; // shading points: one a pixel, or two
     // Stages run one after the other, and share memory for what only they need; those of one Scratch hand some of it on.
-    ScratchPool scratch_;        // of stages that work on the picture
-    ScratchPool photon_scratch_; // of photons and the cut, which do not wait for those
+    ScratchPool scratch_;
+    ScratchPool photon_scratch_; // of photons and their trees, which need not wait for what works on the picture
     LightBuffers light_;
     PrimaryStage primary_;
     ViewScaleStage view_scale_;

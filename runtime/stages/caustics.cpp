@@ -23,7 +23,9 @@ void CausticsStage::record(Recorder& rec, const PhotonTreeStage::Output& map, co
                      {"Photons", map.photons},
                      {"Order", map.tree.order()},
                      {"Spheres", spheres_},
-                     {"Supports", supports_}});
+                     {"Supports", supports_},
+                     {"LeafParents", map.tree.leafParents()},
+                     {"NodeParents", map.tree.nodeParents()}});
     map.tree.refit(rec, spheres_, map.size);
     rec.run(apply_, in.point_count, gpu::CausticsParams{.point_count = in.point_count, .width = in.camera.width},
             {{"Size", map.size},

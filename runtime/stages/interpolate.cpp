@@ -30,7 +30,7 @@ InterpolateStage::Sorted InterpolateStage::sort(Recorder& rec, const SamplesStag
         reorder_, samples.size, NoParams{},
         {{"Size", samples.size}, {"Order", tree_.order()}, {"Samples", samples.samples}, {"Sorted", sorted_}});
     const uint32_t groups = groupsOf(view.point_count);
-    rec.run(nearby_kernel_, groups,
+    rec.run(nearby_kernel_, groups * gpu::kNearbyThreads,
             gpu::NearbyParams{.point_count = view.point_count, .width = view.width, .group_count = groups},
             {{"Size", samples.size},
              {"TreeNodes", tree_.nodes()},

@@ -31,13 +31,25 @@ layout(set = 1, binding = 12, scalar) readonly buffer Tiles { TilePairs tiles[];
 
 void main()
 {
-    loadSurroundings();
-    barrier();
-    ivec2 here = tileCorner() + inTile(gl_LocalInvocationID.x);
-    if (any(greaterThanEqual(here, pictureSize())))
-        return;
+    uint thread = gl_LocalInvocationID.x;
+    int quad = int(thread) % kQuads, part = int(thread) / kQuads;
+    ivec2 in_tile = inTile(thread), here = tileCorner() + in_tile;
+    bool inside = all(lessThan(here, pictureSize()));
     uint pixel = uint(here.y) * params.width + uint(here.x);
-    Past past = recall(pixel);
-    reconcile(past, pixel);
+    loadSurroundings();
+    Past past = Past(kNoMemory, kNoMemory, kNoMemory, kNoMemory);
+    if (inside)
+        past = recall(pixel);
+    noteMemory(thread, past);
+    if (part == 0)
+        pickPixel(quad);
+    barrier();
+    findPlaces(quad, part);
+    barrier();
+    compareTerm(quad, uint(part));
+    barrier();
+    if (!inside)
+        return;
+    reconcile(past, pixel, in_tile);
     rememberPixel(pixel, past);
 }

@@ -6,7 +6,7 @@
 #include "shaders/lib/tile.glsl"
 
 // Samples whose supports reach into the box around a group's shading points: one search in place of one a pixel. In the order in
-// which that finds them, so that sums over them are the same each time. One thread per group of pixels.
+// which that finds them, so that sums over them are the same each time. kNearbyThreads for a group of pixels, of which one searches.
 
 layout(local_size_x = kSamplesGroupSize) in;
 layout(push_constant, scalar) uniform Params { NearbyParams params; };
@@ -21,19 +21,36 @@ layout(set = 1, binding = 5, scalar) writeonly buffer NearbyCounts { uint nearby
 #include "shaders/lib/sample.glsl"
 #include "shaders/lib/tree.glsl"
 
-void main()
+shared vec3 lows[kSamplesGroupSize], highs[kSamplesGroupSize];
+
+/// Around a thread's share of the group's points.
+void boxPoints(uint group, uint part, uint thread)
 {
-    uint group = gl_GlobalInvocationID.x;
-    if (group >= params.group_count)
-        return;
     vec3 low = vec3(kInfinity), high = vec3(-kInfinity);
-    for (uint k = 0u; k < kRaysGroupSize; ++k)
+    for (uint k = part; k < kRaysGroupSize; k += kNearbyThreads)
     {
         uint pixel = tiledPixel(group * kRaysGroupSize + k, params.width, params.point_count);
-        if (pixel >= params.point_count || loadPoint(pixel).slot == kNone)
+        if (group >= params.group_count || pixel >= params.point_count || loadPoint(pixel).slot == kNone)
             continue;
         low = min(low, loadPoint(pixel).position);
         high = max(high, loadPoint(pixel).position);
+    }
+    lows[thread] = low;
+    highs[thread] = high;
+}
+
+void main()
+{
+    uint thread = gl_LocalInvocationID.x, group = gl_GlobalInvocationID.x / kNearbyThreads, part = thread % kNearbyThreads;
+    boxPoints(group, part, thread);
+    barrier();
+    if (part != 0u || group >= params.group_count)
+        return;
+    vec3 low = lows[thread], high = highs[thread];
+    for (uint k = 1u; k < kNearbyThreads; ++k)
+    {
+        low = min(low, lows[thread + k]);
+        high = max(high, highs[thread + k]);
     }
     uint found = 0u, i, end;
     beginRanges(low.x <= high.x ? size.count : 0u);
