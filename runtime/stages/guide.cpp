@@ -10,13 +10,11 @@ namespace
 constexpr uint32_t kManyLights =
     4; // from here on some of them may be hidden; a quad lamp is two triangles, hence two lights
 
-/// Scale of the fixed-point estimates: as large as possible without overflow in a cell that all photons leave from.
-float estimateScale(uint32_t photon_count)
+/// Scale of the fixed-point estimates: as large as possible without overflow in a cell that all paths leave from, each of
+/// which adds 1 at most.
+float estimateScale(uint32_t path_count)
 {
-    constexpr double kMostWeight = gpu::kGuideGroups / double(gpu::kGuideUnguided), kMostScale = 16;
-    const double most = double(photon_count) * gpu::kGuideMostImportance * kMostWeight;
-    const double scale = std::min(kMostScale, 4294967295.0 / most);
-    return float(scale >= 1 ? std::floor(scale) : scale);
+    return float(std::ldexp(1.0, 62) / path_count);
 }
 
 bool isInfinite(const gpu::Light& light)
@@ -65,12 +63,13 @@ bool GuideStage::helps(const SceneGpu& scene)
 
 GuideStage::GuideStage(const Device& device, const SceneGpu& scene, uint32_t max_paths)
     : scene_(scene), table_version_(scene.lightTableVersion()), emit_(device.kernel("guide/emit", scene.constants())),
-      splat_(device.kernel("guide/splat", scene.constants())),
-      estimate_(device.kernel("guide/estimate", scene.constants())), learn_(device.kernel("guide/learn")),
+      splat_(device.kernel("guide/splat", scene.constants())), value_(device.kernel("guide/value", scene.constants())),
+      estimate_(device.kernel("guide/estimate")), learn_(device.kernel("guide/learn")),
       distribution_(device.array<gpu::GuideDistribution>("guide.distribution", 1)),
       cells_(device.array<uint32_t>("guide.cells", max_paths)),
       importance_(device.array<uint32_t>("guide.importance", gpu::kGuideBins)),
-      estimates_(device.array<gpu::GuideEstimate>("guide.estimates", gpu::kGuideTotal))
+      values_(device.array<float>("guide.values", max_paths)), largest_(device.array<uint32_t>("guide.largest", 1)),
+      estimates_(device.array<gpu::GuideEstimate>("guide.estimates", gpu::kGuideTotal)), max_paths_(max_paths)
 {
     const GuidedLights lights = groupsOf(scene.lights());
     groups_ = device.upload<gpu::GuideGroups>("guide.groups", std::span(&lights.groups, 1));
@@ -94,13 +93,14 @@ void GuideStage::reset(Recorder& rec)
     has_learned_ = false;
     rec.clear(estimates_);
     rec.clear(importance_);
+    rec.clear(largest_);
     runLearn(rec, 0);
 }
 
 void GuideStage::runLearn(Recorder& rec, float memory) const
 {
-    rec.run(learn_, gpu::kGuideLearnSize, gpu::LearnParams{.memory = memory},
-            {{"Groups", groups_}, {"Estimates", estimates_}, {"Distribution", distribution_}});
+    rec.run(learn_, gpu::kGuideLearnSize, gpu::LearnParams{.memory = memory, .scale = estimateScale(max_paths_)},
+            {{"Groups", groups_}, {"Largest", largest_}, {"Estimates", estimates_}, {"Distribution", distribution_}});
 }
 
 void GuideStage::emit(Recorder& rec, const Buffer& starts, const gpu::EmitParams& params) const
@@ -124,16 +124,22 @@ void GuideStage::splat(Recorder& rec, const RayQueue& queue, uint32_t max_rays, 
 void GuideStage::learn(Recorder& rec, const StoredPhotons& map)
 {
     has_learned_ = true;
-    rec.run(estimate_, map.path_count, gpu::EstimateParams{.scale = estimateScale(map.capacity)},
-            {{"Groups", groups_},
-             {"Distribution", distribution_},
-             {"Cells", cells_},
-             {"Photons", map.photons},
+    rec.clear(largest_);
+    rec.run(value_, map.path_count, NoParams{},
+            {{"Photons", map.photons},
              {"Slots", map.slots},
              {"Offsets", map.offsets},
              {"Counts", map.counts},
              {"Store", map.store},
              {"Importance", importance_},
+             {"Values", values_},
+             {"Largest", largest_}});
+    rec.run(estimate_, map.path_count, gpu::EstimateParams{.scale = estimateScale(max_paths_)},
+            {{"Distribution", distribution_},
+             {"Cells", cells_},
+             {"Store", map.store},
+             {"Values", values_},
+             {"Largest", largest_},
              {"Estimates", estimates_}});
     runLearn(rec, gpu::kGuideMemory);
 }

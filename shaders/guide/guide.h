@@ -23,7 +23,8 @@ GPU_CONST uint kGuideGroupSize = 64u;
 GPU_CONST uint kGuideLearnSize = 256u;
 
 GPU_CONST float kGuideUnguided =
-    0.35f; // fraction of the photons that is emitted without guiding, which bounds the weights
+    0.2f; // fraction of the photons that is emitted without guiding, which bounds the weights
+GPU_CONST float kGuideSpread = 0.5f;  // fraction of what was learned of a cell that is spread over those around it
 GPU_CONST float kGuideMemory = 0.75f; // weight of what was learned before, a frame
 
 struct GuideGroups // which lights they are, fixed for a scene, and how likely, which follows their power
@@ -34,12 +35,12 @@ struct GuideGroups // which lights they are, fixed for a scene, and how likely, 
 };
 GPU_SIZE(GuideGroups, 92);
 
-struct GuideEstimate
+struct GuideEstimate // of the square of what a cell's paths give the picture
 {
-    uint now;     // importance at the places of this frame's photons, weighted by their power, fixed point
-    float before; // fading sum over the frames
+    uint low, high; // sum over this frame's paths, 64 bits of fixed point in units of the square of the largest
+    float before;   // fading sum over the frames
 };
-GPU_SIZE(GuideEstimate, 8);
+GPU_SIZE(GuideEstimate, 12);
 
 struct GuideDistribution // of emission, learned
 {
@@ -58,8 +59,9 @@ GPU_SIZE(EstimateParams, 4);
 struct LearnParams
 {
     float memory; // weight of what was learned before
+    float scale;  // of the fixed-point estimates
 };
-GPU_SIZE(LearnParams, 4);
+GPU_SIZE(LearnParams, 8);
 
 GPU_NAMESPACE_END
 #endif

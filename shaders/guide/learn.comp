@@ -1,17 +1,21 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
+#include "shaders/lib/math.glsl"
 #include "shaders/guide/guide.h"
 
-// Computes the emission distribution of the next photons. One group: each thread takes a run of cells of one group, then runs
-// add up in order.
+// Computes the emission distribution of the next photons: cells in proportion to the root of the mean square of what their paths
+// give the picture, half of it spread over the cells around. A cell that a window's edge crosses is hit by few paths, which are very
+// bright until it is learned; beside a bright cell it is expected to be one. One group: each thread takes a run of cells of one
+// group, then runs add up in order.
 
 layout(local_size_x = kGuideLearnSize) in;
 layout(push_constant, scalar) uniform Params { LearnParams params; };
 
 layout(set = 1, binding = 0, scalar) readonly buffer Groups { GuideGroups groups; };
-layout(set = 1, binding = 1, scalar) buffer Estimates { GuideEstimate estimates[]; };
-layout(set = 1, binding = 2, scalar) writeonly buffer Distribution { GuideDistribution distribution; };
+layout(set = 1, binding = 1, scalar) readonly buffer Largest { float largest; }; // of the values that estimates are sums of
+layout(set = 1, binding = 2, scalar) coherent buffer Estimates { GuideEstimate estimates[]; };
+layout(set = 1, binding = 3, scalar) writeonly buffer Distribution { GuideDistribution distribution; };
 
 const uint kRun = kGuideTotal / kGuideLearnSize;    // cells
 const uint kGroupRuns = kGuideCells / kRun;
@@ -25,15 +29,42 @@ float sumOfRuns(uint first, uint end)
     return sum;
 }
 
+void update(uint i)
+{
+    float now = (float(estimates[i].high) * 4294967296.0 + float(estimates[i].low)) / params.scale * square(largest);
+    estimates[i] = GuideEstimate(0u, 0u, params.memory * estimates[i].before + now);
+}
+
+/// The root of the estimate; of a light with places of its own, half of it from the 3 x 3 cells around by 1 2 1.
+float target(uint i)
+{
+    float own = sqrt(estimates[i].before);
+    uint group = i / kGuideCells;
+    if (group >= kGuideInfiniteLights)
+        return own;
+    ivec2 at = ivec2(i % kGuideSide, i % kGuideCells / kGuideSide);
+    float around = 0.0;
+    for (int y = max(at.y - 1, 0); y <= min(at.y + 1, int(kGuideSide) - 1); ++y)
+        for (int x = max(at.x - 1, 0); x <= min(at.x + 1, int(kGuideSide) - 1); ++x)
+        {
+            float weight = (x == at.x ? 2.0 : 1.0) * (y == at.y ? 2.0 : 1.0) / 16.0;
+            around += weight * sqrt(estimates[group * kGuideCells + uint(y) * kGuideSide + uint(x)].before);
+        }
+    return mix(own, around, kGuideSpread);
+}
+
 void main()
 {
     uint run = gl_LocalInvocationID.x, first = run * kRun, group = run / kGroupRuns;
-    float own = 0.0;
     for (uint i = first; i < first + kRun; ++i)
+        update(i);
+    memoryBarrierBuffer();
+    barrier();
+    float own = 0.0, targets[kRun];
+    for (uint i = 0u; i < kRun; ++i)
     {
-        estimates[i].before = params.memory * estimates[i].before + float(estimates[i].now);
-        estimates[i].now = 0u;
-        own += estimates[i].before;
+        targets[i] = groups.shares[group] > 0.0 ? target(first + i) : 0.0;
+        own += targets[i];
     }
     sums[run] = own;
     barrier();
@@ -47,7 +78,7 @@ void main()
     float running = guided * sumOfRuns(group * kGroupRuns, run) + even * float((run % kGroupRuns) * kRun);
     for (uint i = first; i < first + kRun; ++i)
     {
-        running += guided * estimates[i].before + even;
+        running += guided * targets[i - first] + even;
         bool last = (i + 1u) % kGuideCells == 0u;
         distribution.cells[i] = last || of_group == 0.0 ? 1.0 : running / of_group;
     }

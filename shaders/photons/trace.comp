@@ -66,33 +66,71 @@ float survivalOf(uint event, float reflected)
     return min(reflected, event < kFreeEvents ? kMostSurvival : kLateSurvival);
 }
 
-/// Photons far from the viewer have high power, and hardly one of them returns: some are aimed at what is in view, with power in
-/// proportion to the probability of that direction, in place of few and bright ones.
-const float kAimedBounces = 0.1, kFarVertex = 8.0, kAimedRadius = 2.0; // the lengths in view distances
+/// Photons have the more power the farther from the viewer they fall, and the fewer of them return: some are aimed at what is in
+/// view, with power in proportion to the probability of that direction, in place of few and bright ones.
+const float kAimedBounces = 0.3;
+const float kFarVertex = 1.25; // view distances: nearer vertices are in view themselves
 
-/// One sample of the BSDF or of the cone towards the view (one-sample model, balance heuristic; Veach 1997, 9.2.4).
+/// Number of spheres around the viewer that photons are aimed at from a vertex at this distance: of one view distance, of two, four
+/// and so on, up to 0.8 of the way. What lies between the view and the vertex gets photons of a power between theirs.
+uint viewSphereCount(float distance) { return uint(max(log2(0.8 * distance / view_scale.distance), 0.0)) + 1u; }
+
+/// Each half as likely as the next smaller one.
+float viewSphereProbability(uint i, uint count) { return exp2(-float(min(i + 1u, count - 1u))); }
+
+float viewConeHeight(uint i, vec3 position)
+{
+    return coneHeight(CausticTarget(view_scale.focus, exp2(float(i)) * view_scale.distance), position);
+}
+
+/// A direction towards one of the spheres. @param axis unit, to their center
+vec3 aimedDirection(vec3 position, vec3 axis, uint count, vec2 random)
+{
+    uint i = 0u;
+    float rest = random.x; // of the random number, for the direction
+    while (i + 1u < count && rest >= 0.5)
+    {
+        rest = 2.0 * rest - 1.0;
+        ++i;
+    }
+    if (i + 1u < count)
+        rest *= 2.0;
+    return frameAround(axis) * uniformCone(viewConeHeight(i, position), vec2(rest, random.y));
+}
+
+/// Its density per steradian. @param cosine of the angle to the axis
+float aimedPdf(vec3 position, float cosine, uint count)
+{
+    float pdf = 0.0;
+    for (uint i = 0u; i < count; ++i)
+    {
+        float height = viewConeHeight(i, position);
+        pdf += cosine >= 1.0 - height ? viewSphereProbability(i, count) / (2.0 * kPi * height) : 0.0;
+    }
+    return pdf;
+}
+
+/// One sample of the BSDF or of the directions towards the view (one-sample model, balance heuristic; Veach 1997, 9.2.4).
 /// @return whether it was aimed
 bool aimBounce(PathVertex v, vec2 random, inout BsdfSample next)
 {
-    vec3 to_focus = view_scale.focus - v.surface.position;
-    float distance2 = dot(to_focus, to_focus), radius = kAimedRadius * view_scale.distance;
-    if (distance2 < square(kFarVertex * view_scale.distance))
+    vec3 position = v.surface.position, to_focus = view_scale.focus - position;
+    float distance = length(to_focus);
+    if (!(distance >= kFarVertex * view_scale.distance))
         return false;
-    CausticTarget view = CausticTarget(view_scale.focus, radius);
-    float height = coneHeight(view, v.surface.position);
-    vec3 axis = to_focus * inversesqrt(distance2);
+    vec3 axis = to_focus / distance;
+    uint count = viewSphereCount(distance);
     float pick = random.x / kAimedBounces;
     bool aimed = pick < 1.0;
     if (aimed)
-        next.wi = (frameAround(axis) * uniformCone(height, vec2(pick, random.y))) * v.frame;
+        next.wi = aimedDirection(position, axis, count, vec2(pick, random.y)) * v.frame;
     else if (next.pdf == 0.0) // a delta lobe is found by its own sample alone
     {
         next.weight /= 1.0 - kAimedBounces;
         return false;
     }
     BsdfValue f = evaluateBsdf(v.bsdf, v.wo, next.wi);
-    bool in_cone = dot(v.frame * next.wi, axis) >= 1.0 - height;
-    next.pdf = (1.0 - kAimedBounces) * f.pdf + (in_cone ? kAimedBounces / (2.0 * kPi * height) : 0.0);
+    next.pdf = (1.0 - kAimedBounces) * f.pdf + kAimedBounces * aimedPdf(position, dot(v.frame * next.wi, axis), count);
     next.weight = next.pdf > 0.0 ? (f.diffuse + f.specular) * abs(next.wi.z) / next.pdf : vec3(0.0);
     next.passed = false;
     if (aimed)

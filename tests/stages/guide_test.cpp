@@ -169,8 +169,31 @@ TEST_F(Guides, AreNoHelpWithOneLamp)
     EXPECT_FALSE(GuideStage::helps(*load(builder.compile())));
 }
 
-/// splat, estimate and learn against sums over the photons, by cell.
-TEST_F(Guides, LearnHowMuchIsWantedOfEachCellsPhotons)
+/// The roots of the estimates, of a group of 32 x 32 cells half of each spread by 1 2 1 both ways.
+std::vector<double> spread(const std::vector<double>& squares)
+{
+    std::vector<double> result;
+    const auto root = [&](uint32_t group, int x, int y)
+    {
+        const int side = gpu::kGuideSide;
+        const bool outside = x < 0 || y < 0 || x >= side || y >= side;
+        return outside ? 0 : std::sqrt(squares[group * gpu::kGuideCells + size_t(y * side + x)]);
+    };
+    for (uint32_t i = 0; i < squares.size(); ++i)
+    {
+        const uint32_t group = i / gpu::kGuideCells;
+        const int x = i % gpu::kGuideSide, y = i % gpu::kGuideCells / gpu::kGuideSide;
+        double around = 0;
+        for (int k = 0; k < 9; ++k)
+            around += root(group, x + k % 3 - 1, y + k / 3 - 1) * (k % 3 == 1 ? 2 : 1) * (k / 3 == 1 ? 2 : 1) / 16.0;
+        const double own = std::sqrt(squares[i]);
+        result.push_back(group < gpu::kGuideInfiniteLights ? own + gpu::kGuideSpread * (around - own) : own);
+    }
+    return result;
+}
+
+/// splat, value, estimate and learn against sums over the photons, by cell.
+TEST_F(Guides, LearnTheRootMeanSquareOfWhatEachCellsPathsGive)
 {
     look();
     const std::vector<double> start = probabilities();
@@ -189,21 +212,39 @@ TEST_F(Guides, LearnHowMuchIsWantedOfEachCellsPhotons)
         return voxel * gpu::kGuideSides + side;
     };
     const auto cells = contents<uint32_t>(guide_->cells(), kPaths);
-    std::vector<double> scores(start.size());
-    double total = 0;
+    const auto scale = contents<gpu::ViewScale>(scene_->viewScale(), 1)[0];
+    const auto area = [&](const gpu::Photon& photon) // of a bin on a wall along the axes
+    {
+        const Double3 at = Double3(photon.position) - Double3(scale.focus), n = unpackedNormal(photon.normal);
+        const auto side = [&](double x) { return std::hypot(x, double(scale.distance)); };
+        return std::abs(n.x) > 0.9   ? side(at.y) * side(at.z)
+               : std::abs(n.y) > 0.9 ? side(at.x) * side(at.z)
+                                     : side(at.x) * side(at.y);
+    };
+    std::vector<double> squares(start.size());
     uint32_t useful = 0;
     for (uint32_t path = 0; path < kPaths; ++path)
+    {
+        double value = 0;
         for (uint32_t n = 0; n < counts[path]; ++n)
         {
-            const double rays =
-                std::min(importance[place(photons[slots[offsets[path] + n]])], gpu::kGuideMostImportance);
-            scores[cells[path]] += rays, total += rays; // nothing was guided yet: all weigh 1
+            const gpu::Photon& photon = photons[slots[offsets[path] + n]];
+            const double rays = std::min(importance[place(photon)], gpu::kGuideMostImportance);
+            const gpu::vec3 p = photon.power;
+            value += rays * (0.2126 * p.x + 0.7152 * p.y + 0.0722 * p.z) / area(photon);
             useful += rays > 0;
         }
+        if (cells[path] != gpu::kNone)
+            squares[cells[path]] += value * value * start[cells[path]];
+    }
     ASSERT_GE(useful, 5) << "too few for a test";
-    const std::vector<double> learned = probabilities();
+    const std::vector<double> wanted = spread(squares), learned = probabilities();
+    double total = 0;
+    for (const double w : wanted)
+        total += w;
+    // Rounding of the power and of the distribution's running sums, of a part in a group of 1.
     for (size_t i = 0; i < learned.size(); ++i)
-        EXPECT_NEAR(learned[i], gpu::kGuideUnguided * start[i] + (1 - gpu::kGuideUnguided) * scores[i] / total, 1e-6)
+        EXPECT_NEAR(learned[i], gpu::kGuideUnguided * start[i] + (1 - gpu::kGuideUnguided) * wanted[i] / total, 1e-6)
             << "cell " << i;
 }
 

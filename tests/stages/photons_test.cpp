@@ -267,6 +267,51 @@ TEST_F(Photons, PassGlassWithoutLoss)
     expectPower(powerOf(photons, kAll), 4 * kPi * Double3(1, 1, 1), 0.02, "all");
 }
 
+/// Light that a small bright spot 20 view distances away scatters, by the angle to the viewer, against the cosine over pi.
+TEST_F(Photons, AreAimedAtTheViewByTheirStatedDensity)
+{
+    constexpr double kAlbedo = 0.8, kInner = 0.004, kOuter = 0.005;
+    SceneBuilder builder;
+    builder.box({-40, 0, -40}, {40, 60, 40}, builder.material(lambert(kAlbedo)), true);
+    builder.light(
+        {{"type", "spot"}, {"intensity", 1e5}, {"spot", {{"innerConeAngle", kInner}, {"outerConeAngle", kOuter}}}},
+        {{"translation", {0, 1, 0}}, {"rotation", kDownwards["rotation"]}});
+    const auto scene = load(builder.compile());
+    const gpu::ViewScale scale{.focus = {20, 5, 0}, .distance = 1};
+    submit(*scene, [&](Recorder& rec) { rec.write(scene->viewScale(), 0, std::as_bytes(std::span(&scale, 1))); });
+    PhotonStage::Input in = firstHits();
+    const auto arrived = emit(*scene, PhotonKind::kGlobal, in);
+    in.bounce_limit = 2;
+    const auto photons = without(emit(*scene, PhotonKind::kGlobal, in), arrived);
+    const double lit = powerOf(arrived, kAll).sum.x;
+    const Double3 axis = normalized(Double3(scale.focus)), across(0, 0, 1), up = normalized(Double3(-5, 20, 0));
+    // Rings between the cones to the spheres around the viewer, of 1, 2, 4, 8 and 16 view distances, and what lies outside.
+    double low = 1, rest = 1;
+    for (const double radius : {1.0, 2.0, 4.0, 8.0, 16.0, 0.0})
+    {
+        const double high = radius > 0 ? std::sqrt(1 - radius * radius / length2(Double3(scale.focus))) : -1;
+        constexpr size_t kSteps = 1000;
+        double want = 0;
+        for (size_t i = 0; i < kSteps; ++i)
+            for (size_t k = 0; k < kSteps; ++k)
+            {
+                const double z = low + (high - low) * (double(i) + 0.5) / kSteps, r = std::sqrt(1 - z * z);
+                const double turn = 2 * kPi * (double(k) + 0.5) / kSteps;
+                const Double3 d = z * axis + r * std::cos(turn) * across + r * std::sin(turn) * up;
+                want += std::max(d.y, 0.0) / kPi * 2 * kPi * (low - high) / (kSteps * kSteps);
+            }
+        const auto in_ring = [&](const gpu::Photon& p)
+        {
+            const double z = dot(unpackedNormal(p.direction), axis);
+            return z <= low && z > high;
+        };
+        expectPower(powerOf(photons, in_ring), kAlbedo * lit * want * Double3(1, 1, 1), 0.15,
+                    fmt::format("ring of {}", radius).c_str());
+        low = high, rest -= want;
+    }
+    EXPECT_NEAR(rest, 0, 1e-3);
+}
+
 TEST_F(Photons, LieOnSurfacesOnTheSideTheyCameFrom)
 {
     SceneBuilder builder;
