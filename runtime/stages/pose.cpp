@@ -95,10 +95,11 @@ bool sameGeometry(const package::Pose& a, const package::Pose& b)
 
 } // namespace
 
-PoseStage::PoseStage(const Device& device, SceneGpu& scene, const package::Package& package)
-    : scene_(scene), deform_(device.kernel("pose/deform")),
-      refit_(device.kernel("pose/refit", {climbConstant(device)})), follow_(device.kernel("pose/follow")),
-      shapes_(package)
+PoseStage::PoseStage(const Device& device, SceneGpu& scene, const package::Package& package, double drift)
+    : scene_(scene), bounds_(package),
+      tree_(package.bvhNodes(), package.firstMovingNode(), package.movingRanges(), drift),
+      deform_(device.kernel("pose/deform")), refit_(device.kernel("pose/refit", {climbConstant(device)})),
+      follow_(device.kernel("pose/follow")), shapes_(package)
 {
     const auto* motion = package.motion();
     check(motion != nullptr, "a package without motion has no poses");
@@ -115,6 +116,11 @@ PoseStage::PoseStage(const Device& device, SceneGpu& scene, const package::Packa
     leaves_ = uploadOrOne<gpu::PosedLeaf>(device, "pose.leaves", tree.leaves);
     parents_ = uploadOrOne<uint32_t>(device, "pose.parents", tree.parents);
     arrivals_ = device.array<uint32_t>("pose.arrivals", tree.parents.size());
+    if (tree_.canChange())
+    {
+        hang_ = device.kernel("pose/hang");
+        objects_ = device.array<gpu::PosedObject>("pose.objects", package.movingRanges().size());
+    }
     const auto emitters = movingEmitters(package);
     const auto targets = movingTargets(package);
     emitters_ = uploadOrOne<gpu::PosedEmitter>(device, "pose.emitters", emitters);
@@ -125,7 +131,8 @@ PoseStage::PoseStage(const Device& device, SceneGpu& scene, const package::Packa
                .first_slot = package.firstMovingSlot(),
                .first_node = package.firstMovingNode(),
                .emitter_count = uint32_t(emitters.size()),
-               .target_count = uint32_t(targets.size())};
+               .target_count = uint32_t(targets.size()),
+               .object_count = uint32_t(package.movingRanges().size())};
     rest_.assign(package.materials().begin(), package.materials().end());
     emitters_of_ = emittersByMaterial(package);
 }
@@ -135,7 +142,10 @@ void PoseStage::record(Recorder& rec, const package::Pose& pose)
     const auto scope = rec.scope("pose");
     const bool moves = !last_ || !sameGeometry(*last_, pose);
     if (moves)
+    {
         uploadBones(rec, pose);
+        hangObjects(rec, pose);
+    }
     if (moves || moved_) // once more after the last move: then what was is what is
         refit(rec);
     changes_.restart(scene_.lights());
@@ -162,6 +172,18 @@ void PoseStage::uploadBones(Recorder& rec, const package::Pose& pose)
              {"Weights", weights_},
              {"Positions", positions_},
              {"Vertices", scene_.buffer(gpu::kVertexAttributesBinding)}});
+}
+
+void PoseStage::hangObjects(Recorder& rec, const package::Pose& pose)
+{
+    if (!tree_.canChange())
+        return;
+    const std::span<const gpu::PosedObject> hung = tree_.update(bounds_.at(pose));
+    if (hung.empty())
+        return;
+    rec.write(objects_, 0, std::as_bytes(hung));
+    rec.run(*hang_, params_.object_count, params_,
+            {{"Objects", objects_}, {"Nodes", scene_.buffer(gpu::kBvhNodesBinding)}, {"Parents", parents_}});
 }
 
 void PoseStage::refit(Recorder& rec) const
