@@ -23,6 +23,8 @@ public:
 
 private:
     void uploadBones(Recorder& rec, const package::Pose& pose);
+    /// Triangles whose sides a scale below 0 exchanges. Comes before refit().
+    void wind(Recorder& rec) const;
     /// Where they have travelled so far that rays would be slow. Boxes are wrong until refit().
     void hangObjects(Recorder& rec, const package::Pose& pose);
     void refit(Recorder& rec) const;
@@ -35,10 +37,12 @@ private:
     ObjectTree tree_;
     Kernel deform_, refit_, follow_;
     std::optional<Kernel> hang_;            // where tree_ can change
+    std::optional<Kernel> wind_;            // where scales can change their sign
     Buffer vertices_, influences_, morphs_; // gpu::MovingVertex[count + 1], gpu::Influence[], gpu::MorphOffset[]
     Buffer bones_, weights_;                // gpu::BoneMatrix[], float[]
     Buffer positions_;                      // vec3[vertex_count]
     Buffer leaves_, parents_, arrivals_;    // gpu::PosedLeaf[], uint[moving nodes] twice
+    Buffer mirrored_;                       // uint[moving slots]
     Buffer objects_;                        // gpu::PosedObject[]
     Buffer emitters_, targets_;             // gpu::PosedEmitter[], gpu::PosedTarget[]
     gpu::PoseParams params_{};

@@ -56,8 +56,9 @@ struct PoseParams
     uint emitter_count; // PosedEmitter
     uint target_count;  // PosedTarget
     uint object_count;  // PosedObject
+    uint slot_count;    // BvhTriangles that move
 };
-GPU_SIZE(PoseParams, 32);
+GPU_SIZE(PoseParams, 36);
 
 GPU_NAMESPACE_END
 #endif
