@@ -16,8 +16,8 @@ GPU_CONST uint kNone = 0xffffffffu; // "no such index", wherever an index is opt
 GPU_CONST uint kBvhWidth = 4u;
 GPU_CONST uint kTraversalStackSize = 64u; // entries; the compiler builds no deeper tree, the reader refuses one
 
-// A child reference is kNone (no child: its bounds are empty, min > max), an inner node's index (greater than its
-// parent's: the tree is acyclic), or a leaf: kLeafBit | (triangle_count - 1) << kLeafCountShift | first BvhTriangle.
+// A child reference is kNone (no child: its bounds are empty, min > max), an inner node's index (in a package
+// greater than its parent's: the tree is acyclic), or a leaf: kLeafBit | (triangle_count - 1) << kLeafCountShift | first BvhTriangle.
 GPU_CONST uint kLeafBit = 0x80000000u;
 GPU_CONST uint kLeafCountShift = 28u;
 GPU_CONST uint kLeafCountMask = 0x7u; // 1..8 triangles a leaf

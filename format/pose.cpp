@@ -222,4 +222,21 @@ gpu::vec3 posedPosition(const Package& package, const Pose& pose, uint32_t verte
     }
     return sum;
 }
+
+bool isMirrored(const Package& package, const Pose& pose, uint32_t vertex)
+{
+    const auto vertices = package.movingVertices();
+    const bool last = vertex + 1 == vertices.size();
+    const size_t end = last ? package.influences().size() : vertices[vertex + 1].first_influence;
+    std::array<Vec3d, 3> rows{};
+    for (size_t k = vertices[vertex].first_influence; k < end; ++k)
+    {
+        const gpu::Influence& influence = package.influences()[k];
+        const gpu::BoneMatrix& m = pose.bones[influence.bone];
+        rows[0] = rows[0] + Vec3d{m.x.x, m.x.y, m.x.z} * influence.weight;
+        rows[1] = rows[1] + Vec3d{m.y.x, m.y.y, m.y.z} * influence.weight;
+        rows[2] = rows[2] + Vec3d{m.z.x, m.z.y, m.z.z} * influence.weight;
+    }
+    return dot(rows[0], cross(rows[1], rows[2])) < 0;
+}
 } // namespace package

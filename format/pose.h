@@ -70,4 +70,6 @@ Pose poseAtRest(const Package& package);
 
 /// Where a moving vertex is, in single precision; the slow way, for few of them. @param vertex into Package::movingVertices()
 gpu::vec3 posedPosition(const Package& package, const Pose& pose, uint32_t vertex);
+/// Whether its blended matrix turns surfaces inside out.
+bool isMirrored(const Package& package, const Pose& pose, uint32_t vertex);
 } // namespace package

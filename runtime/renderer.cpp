@@ -116,6 +116,12 @@ FrameInfo Renderer::beginFrame(Recorder& rec, const Camera& camera, const Settin
     return frame;
 }
 
+void Renderer::changeLights(Recorder& rec, SceneGpu& scene, std::span<const ChangedLight> changed)
+{
+    check(&scene == &scene_, "lights of another scene than the renderer's");
+    scene.setLights(rec, changed);
+}
+
 void Renderer::record(Recorder& rec, const Camera& camera, const Settings& settings, uint32_t seed,
                       uint32_t sample_count)
 {

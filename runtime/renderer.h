@@ -39,6 +39,11 @@ public:
     /// Records one frame, `sample_count` more samples a pixel. A changed camera or light starts the picture anew.
     void record(Recorder& rec, const Camera& camera, const Settings& settings, uint32_t seed,
                 uint32_t sample_count = 1);
+    /// For an editor: from the next record() on lights are these, where they are, what they emit and how often they are picked; one
+    /// that emits nothing is as if it were not there. That record() starts the picture anew, and histories go on as far as the
+    /// change lets them. Lights keep their kinds. Of a lamp that is a surface, SceneGpu::setEmission() changes what is seen of it.
+    /// @param scene the renderer's own, @param changed each of another light, by index as in SceneGpu::lights()
+    void changeLights(Recorder& rec, SceneGpu& scene, std::span<const ChangedLight> changed);
     /// The next record() starts the picture anew: settings that decide what samples show have changed.
     void restart() { last_camera_.reset(); }
     /// What the view "error" compares the picture with; without it that view is the picture. See ErrorView.

@@ -83,6 +83,41 @@ std::vector<std::vector<uint32_t>> emittersByMaterial(const package::Package& pa
     return lights;
 }
 
+/// Whether an animation can make a scale's sign another. Cubic splines may go beyond their keys.
+bool scalesChangeSign(const package::Package& package)
+{
+    namespace fb = lumicut::fb;
+    const auto canMirror = [&](const fb::Channel* channel)
+    {
+        if (channel->target() != fb::ChannelTarget::Scale)
+            return false;
+        const fb::Double3* const rest = package.motion()->nodes()->Get(channel->index())->scale();
+        return channel->interpolation() == fb::Interpolation::CubicSpline ||
+               (rest != nullptr && std::min({rest->x(), rest->y(), rest->z()}) <= 0) ||
+               std::ranges::any_of(*channel->values(), [](float scale) { return scale <= 0; });
+    };
+    return std::ranges::any_of(*package.motion()->clips(),
+                               [&](const fb::Clip* clip) { return std::ranges::any_of(*clip->channels(), canMirror); });
+}
+
+/// Which moving triangles the package has wound as mirrored ones, by slot.
+std::vector<uint32_t> mirroredAtRest(const package::Package& package)
+{
+    const package::Pose rest = package::poseAtRest(package);
+    const auto vertices = package.movingVertices();
+    std::vector<bool> mirrored(vertices.size());
+    for (uint32_t v = 0; v < vertices.size(); ++v)
+        mirrored[v] = package::isMirrored(package, rest, v);
+    std::vector<uint32_t> triangles;
+    for (const gpu::BvhTriangle& slot : package.bvhTriangles().subspan(package.firstMovingSlot()))
+    {
+        const gpu::uvec3& v = package.triangles()[slot.triangle].vertices;
+        const uint32_t first = package.firstMovingVertex();
+        triangles.push_back(mirrored[v.x - first] + mirrored[v.y - first] + mirrored[v.z - first] >= 2 ? 1 : 0);
+    }
+    return triangles;
+}
+
 bool sameBytes(const auto& a, const auto& b)
 {
     return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(a[0])) == 0);
@@ -95,10 +130,11 @@ bool sameGeometry(const package::Pose& a, const package::Pose& b)
 
 } // namespace
 
-PoseStage::PoseStage(const Device& device, SceneGpu& scene, const package::Package& package)
-    : scene_(scene), deform_(device.kernel("pose/deform")),
-      refit_(device.kernel("pose/refit", {climbConstant(device)})), follow_(device.kernel("pose/follow")),
-      shapes_(package)
+PoseStage::PoseStage(const Device& device, SceneGpu& scene, const package::Package& package, double drift)
+    : scene_(scene), bounds_(package),
+      tree_(package.bvhNodes(), package.firstMovingNode(), package.movingRanges(), drift),
+      deform_(device.kernel("pose/deform")), refit_(device.kernel("pose/refit", {climbConstant(device)})),
+      follow_(device.kernel("pose/follow")), shapes_(package)
 {
     const auto* motion = package.motion();
     check(motion != nullptr, "a package without motion has no poses");
@@ -115,6 +151,16 @@ PoseStage::PoseStage(const Device& device, SceneGpu& scene, const package::Packa
     leaves_ = uploadOrOne<gpu::PosedLeaf>(device, "pose.leaves", tree.leaves);
     parents_ = uploadOrOne<uint32_t>(device, "pose.parents", tree.parents);
     arrivals_ = device.array<uint32_t>("pose.arrivals", tree.parents.size());
+    if (tree_.canChange())
+    {
+        hang_ = device.kernel("pose/hang");
+        objects_ = device.array<gpu::PosedObject>("pose.objects", package.movingRanges().size());
+    }
+    if (scalesChangeSign(package))
+    {
+        wind_ = device.kernel("pose/wind");
+        mirrored_ = uploadOrOne<uint32_t>(device, "pose.mirrored", mirroredAtRest(package));
+    }
     const auto emitters = movingEmitters(package);
     const auto targets = movingTargets(package);
     emitters_ = uploadOrOne<gpu::PosedEmitter>(device, "pose.emitters", emitters);
@@ -125,7 +171,9 @@ PoseStage::PoseStage(const Device& device, SceneGpu& scene, const package::Packa
                .first_slot = package.firstMovingSlot(),
                .first_node = package.firstMovingNode(),
                .emitter_count = uint32_t(emitters.size()),
-               .target_count = uint32_t(targets.size())};
+               .target_count = uint32_t(targets.size()),
+               .object_count = uint32_t(package.movingRanges().size()),
+               .slot_count = uint32_t(package.bvhTriangles().size()) - package.firstMovingSlot()};
     rest_.assign(package.materials().begin(), package.materials().end());
     emitters_of_ = emittersByMaterial(package);
 }
@@ -135,7 +183,11 @@ void PoseStage::record(Recorder& rec, const package::Pose& pose)
     const auto scope = rec.scope("pose");
     const bool moves = !last_ || !sameGeometry(*last_, pose);
     if (moves)
+    {
         uploadBones(rec, pose);
+        wind(rec);
+        hangObjects(rec, pose);
+    }
     if (moves || moved_) // once more after the last move: then what was is what is
         refit(rec);
     changes_.restart(scene_.lights());
@@ -162,6 +214,31 @@ void PoseStage::uploadBones(Recorder& rec, const package::Pose& pose)
              {"Weights", weights_},
              {"Positions", positions_},
              {"Vertices", scene_.buffer(gpu::kVertexAttributesBinding)}});
+}
+
+void PoseStage::wind(Recorder& rec) const
+{
+    if (!wind_)
+        return;
+    rec.run(*wind_, params_.slot_count, params_,
+            {{"MovingVertices", vertices_},
+             {"Influences", influences_},
+             {"Bones", bones_},
+             {"Mirrored", mirrored_},
+             {"Slots", scene_.buffer(gpu::kBvhTrianglesBinding)},
+             {"Triangles", scene_.buffer(gpu::kTrianglesBinding)}});
+}
+
+void PoseStage::hangObjects(Recorder& rec, const package::Pose& pose)
+{
+    if (!tree_.canChange())
+        return;
+    const std::span<const gpu::PosedObject> hung = tree_.update(bounds_.at(pose));
+    if (hung.empty())
+        return;
+    rec.write(objects_, 0, std::as_bytes(hung));
+    rec.run(*hang_, params_.object_count, params_,
+            {{"Objects", objects_}, {"Nodes", scene_.buffer(gpu::kBvhNodesBinding)}, {"Parents", parents_}});
 }
 
 void PoseStage::refit(Recorder& rec) const

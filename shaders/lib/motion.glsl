@@ -17,8 +17,15 @@ vec3 displacementOf(ShadingPoint point)
     return weights.x * (now.v0 - last.v0) + weights.y * (now.v1 - last.v1) + weights.z * (now.v2 - last.v2);
 }
 
+/// A way in the world as it is seen in the point's mirror. Behind several mirrors it is taken as it is.
+vec3 wayInMirror(ShadingPoint point, vec3 way)
+{
+    bool one = point.depth > 0u && point.mirror != kNoMirror && point.mirror != kManyMirrors;
+    return one ? reflect(way, unpackNormal(point.mirror)) : way;
+}
+
 /// Where what the pixel shows was in the last picture. In mirrors and glass it is taken for the image behind them that a plane
-/// one would show, and for one that moves as the surface itself does. @param spread of ShadingPoint.width over the way from the eye
+/// one would show, if that stands still. @param spread of ShadingPoint.width over the way from the eye
 Motion motionOf(uint pixel, ShadingPoint point, vec3 displacement, float spread, bool has_last)
 {
     CameraParams camera = views.now;
@@ -33,7 +40,7 @@ Motion motionOf(uint pixel, ShadingPoint point, vec3 displacement, float spread,
         return Motion(vec2(kNoMotion), distance_);
     vec3 eye = ray.origin - nearDistance(camera, ray) * ray.direction;
     vec2 last;
-    bool seen = distance_ < kInfinity ? imagePosition(views.last, eye + distance_ * ray.direction - displacement, last)
+    bool seen = distance_ < kInfinity ? imagePosition(views.last, eye + distance_ * ray.direction - wayInMirror(point, displacement), last)
                                       : imageDirection(views.last, ray.direction, last);
     return Motion(seen ? last - at : vec2(kNoMotion), distance_);
 }

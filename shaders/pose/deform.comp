@@ -17,6 +17,7 @@ layout(set = 1, binding = 3, scalar) readonly buffer Bones { BoneMatrix bones[];
 layout(set = 1, binding = 4, scalar) readonly buffer Weights { float weights[]; };
 layout(set = 1, binding = 5, scalar) writeonly buffer Positions { vec3 positions[]; };
 layout(set = 1, binding = 6, scalar) writeonly buffer Vertices { VertexAttributes vertices[]; };
+#include "shaders/pose/blend.glsl"
 
 vec3 place(BoneMatrix m, vec4 p) { return vec3(dot(m.x, p), dot(m.y, p), dot(m.z, p)); }
 
@@ -41,18 +42,10 @@ void main()
         normal += weight * morphs[k].normal;
         tangent += weight * morphs[k].tangent;
     }
-    BoneMatrix m = BoneMatrix(vec4(0.0), vec4(0.0), vec4(0.0));
-    for (uint k = moving[i].first_influence; k < moving[i + 1u].first_influence; ++k)
-    {
-        float weight = influences[k].weight;
-        BoneMatrix bone = bones[influences[k].bone];
-        m.x += weight * bone.x;
-        m.y += weight * bone.y;
-        m.z += weight * bone.z;
-    }
+    BoneMatrix m = blendedMatrix(i);
     positions[i] = place(m, vec4(position, 1.0));
     // Normals by the inverse transpose, but for its length: the cofactors with the determinant's sign.
-    float side = dot(m.x.xyz, cross(m.y.xyz, m.z.xyz)) < 0.0 ? -1.0 : 1.0;
+    float side = mirrors(m) ? -1.0 : 1.0;
     vec3 turned = dot(normal, normal) > 0.0
                       ? vec3(dot(cross(m.y.xyz, m.z.xyz), normal), dot(cross(m.z.xyz, m.x.xyz), normal), dot(cross(m.x.xyz, m.y.xyz), normal))
                       : vec3(0.0);

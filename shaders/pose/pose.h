@@ -17,6 +17,13 @@ struct PosedLeaf // a leaf of the moving part of the hierarchy
 };
 GPU_SIZE(PosedLeaf, 8);
 
+struct PosedObject // a moving object
+{
+    uint link; // where it hangs
+    uint node; // root of the object's part of the hierarchy
+};
+GPU_SIZE(PosedObject, 8);
+
 struct PosedEmitter // a moving triangle that is a light
 {
     uint light; // index into Lights
@@ -48,8 +55,10 @@ struct PoseParams
     uint first_node;    // index of the first moving node; its ancestors but the root are none
     uint emitter_count; // PosedEmitter
     uint target_count;  // PosedTarget
+    uint object_count;  // PosedObject
+    uint slot_count;    // BvhTriangles that move
 };
-GPU_SIZE(PoseParams, 28);
+GPU_SIZE(PoseParams, 36);
 
 GPU_NAMESPACE_END
 #endif

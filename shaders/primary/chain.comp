@@ -23,6 +23,9 @@ layout(set = 1, binding = 7, scalar) writeonly buffer DiffusePoints { DiffusePoi
 
 const float kAllMirror = 0.9999; // what reflects as much has nothing below it: the rest is rounding
 
+/// ShadingPoint.mirror behind one more mirror.
+uint mirrorAfter(uint mirror, vec3 normal) { return mirror == kNoMirror ? packNormal(normal) : kManyMirrors; }
+
 /// At the first vertex the mirrored part of the light goes its own way, to the pixel's second point: what is seen in a pane and
 /// what is seen through it are both there in every frame. @param random picks among mirrors
 void split(Ray ray, PathVertex v, float scattered, float mirror, vec3 throughput, uint medium, float width, float random)
@@ -38,11 +41,12 @@ void split(Ray ray, PathVertex v, float scattered, float mirror, vec3 throughput
     points[second].throughput = throughput * next.weight * mirror;
     points[second].slot = mediumAfter(v, next, medium);
     points[second].width = width;
+    points[second].mirror = mirrorAfter(kNoMirror, v.surface.normal);
     next_rays[atomicAdd(next_queue.count, 1u)] = leavingRay(v.surface, wi, kInfinity, second);
 }
 
 /// What a chain's ray that met something does there. `point` and `diffuse` are updated where it is the shading point, and
-/// `point` where the chain goes on: until it is finished its point holds the throughput and width so far and, in `slot`, the
+/// `point` where the chain goes on: until it is finished its point holds throughput, width and mirrors so far and, in `slot`, the
 /// medium that the ray is in. @return radiance that the surface itself sends along the ray
 vec3 meetSurface(Ray ray, Hit hit, inout ShadingPoint point, inout DiffusePoint diffuse)
 {
@@ -74,7 +78,7 @@ vec3 meetSurface(Ray ray, Hit hit, inout ShadingPoint point, inout DiffusePoint 
         throughput /= hasDeltaLobe(b) ? scattered / rest : 1.0;
         vec3 reflectance = throughput * diffuseReflectance(b, max(0.0, -dot(s.normal, direction)));
         point = ShadingPoint(s.position, hit.slot, direction, params.depth, throughput, hit.barycentrics, point.width,
-                             s.back, 0.0);
+                             s.back, point.mirror);
         // Irradiance will be that of the smooth normal: even light over its hemisphere gives a bent one this much of it.
         reflectance *= 0.5 + 0.5 * dot(s.normal, s.smooth_normal);
         diffuse = DiffusePoint(s.position - min(clearance(s), s.back) * direction, unitToOctahedral(s.smooth_normal), reflectance);
@@ -89,6 +93,8 @@ vec3 meetSurface(Ray ray, Hit hit, inout ShadingPoint point, inout DiffusePoint 
     medium = mediumAfter(v, next, medium);
     point.throughput = throughput * next.weight * rest;
     point.slot = medium;
+    if (next.wi.z > 0.0)
+        point.mirror = mirrorAfter(point.mirror, s.normal);
     next_rays[atomicAdd(next_queue.count, 1u)] = leavingRay(s, wi, kInfinity, ray.path);
     return light;
 }
@@ -100,13 +106,13 @@ void main()
         return;
     Ray ray = loadRay(i);
     Hit hit = loadHit(i);
-    ShadingPoint point = ShadingPoint(vec3(0.0), kNone, ray.direction, params.depth, vec3(1.0), vec2(0.0), params.width, 0.0, 0.0);
+    ShadingPoint point = ShadingPoint(vec3(0.0), kNone, ray.direction, params.depth, vec3(1.0), vec2(0.0), params.width, 0.0, kNoMirror);
     if (params.depth == 0u)
         point.width += params.spread * length(ray.origin - params.eye); // the near plane is where it starts
     if (params.splits != 0u)
     {
         uint second = ray.path + params.pixel_count;
-        points[second] = ShadingPoint(vec3(0.0), kNone, ray.direction, params.depth, vec3(0.0), vec2(0.0), params.width, 0.0, 0.0);
+        points[second] = ShadingPoint(vec3(0.0), kNone, ray.direction, params.depth, vec3(0.0), vec2(0.0), params.width, 0.0, kNoMirror);
         diffuse_points[second] = DiffusePoint(vec3(0.0), vec2(0.0), vec3(0.0));
         radiance[second] = vec3(0.0);
     }
@@ -116,6 +122,7 @@ void main()
         point.throughput = points[ray.path].throughput;
         point.slot = points[ray.path].slot;
         point.width = points[ray.path].width;
+        point.mirror = points[ray.path].mirror;
         before = radiance[ray.path];
     }
     DiffusePoint diffuse = DiffusePoint(vec3(0.0), vec2(0.0), vec3(0.0));

@@ -137,6 +137,38 @@ TEST_F(ChangedLights, DeviceHasThemWithTheProbabilitiesOfTheirPower)
     EXPECT_EQ(drawn[1], 0);
 }
 
+TEST_F(ChangedLights, ByTheRendererStartThePictureAnew)
+{
+    SceneBuilder builder;
+    const auto scene = load(compile(builder, false));
+    const Camera camera{
+        .name = {}, .position = {0, 1.6f, 4.5f}, .forward = {0, -0.2f, -0.98f}, .up = {0, 0.98f, -0.2f}};
+    Renderer edited(device(), *scene, Mode::kReference, kWidth, kHeight);
+    Recorder rec(device());
+    const auto show = [&](Renderer& renderer, std::span<const ChangedLight> changed)
+    {
+        rec.begin(scene->descriptorSet());
+        renderer.changeLights(rec, *scene, changed);
+        renderer.record(rec, camera, smallSettings(), 1);
+        rec.submitAndWait();
+        return renderer.sampleCount();
+    };
+    EXPECT_EQ(show(edited, {}), 1u);
+    EXPECT_EQ(show(edited, {}), 2u);
+    const auto before = edited.picture(device());
+    std::vector<ChangedLight> changed{{0, scene->lights()[0]}, {1, scene->lights()[1]}};
+    changed[0].light.emission = {};        // off
+    changed[1].light.emission = {9, 3, 1}; // and another place and colour
+    changed[1].light.p0 = {0, 2, 1};
+    EXPECT_EQ(show(edited, changed), 1u);
+    Renderer fresh(device(), *scene, Mode::kReference, kWidth, kHeight);
+    EXPECT_EQ(show(fresh, {}), 1u);
+    const auto now = edited.picture(device()), right = fresh.picture(device());
+    EXPECT_TRUE(equalBytes(std::span<const gpu::vec3>(now), std::span<const gpu::vec3>(right)));
+    EXPECT_FALSE(equalBytes(std::span<const gpu::vec3>(now), std::span<const gpu::vec3>(before)));
+    EXPECT_EQ(show(edited, {}), 2u);
+}
+
 TEST_F(ChangedLights, ShineAsWhereTheSceneIsCompiledWithThem)
 {
     SceneBuilder before, after;

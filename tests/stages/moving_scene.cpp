@@ -196,6 +196,19 @@ MovingScene::MovingScene() : folder_(std::make_unique<Folder>())
     source_ = folder_->folder / "moving.gltf";
     package_ = folder_->folder / "moving.lumi";
     gltf.writeGltf(source_);
+    compileSource();
+}
+
+MovingScene::MovingScene(std::span<const uint8_t> glb)
+    : folder_(std::make_unique<Folder>()), source_(folder_->folder / "moving.glb"),
+      package_(folder_->folder / "moving.lumi")
+{
+    writeBytes(source_, glb.data(), glb.size());
+    compileSource();
+}
+
+void MovingScene::compileSource() const
+{
     const auto report = compile({.input = source_, .output = package_});
     check(bool(report), "the moving scene does not compile: {}", report ? "" : report.error().message);
 }

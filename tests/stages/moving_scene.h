@@ -2,6 +2,7 @@
 #pragma once
 #include <filesystem>
 #include <memory>
+#include <span>
 
 /// Compiles it, into a folder that lives as long as the object. One clip of two seconds: a box turns and travels, a strip of
 /// two joints bends, a sheet with a morph target bulges, a lamp (a quad that shines) rises and changes its size, a quad and a
@@ -11,6 +12,8 @@ class MovingScene
 {
 public:
     MovingScene();
+    /// Another one. @param glb binary glTF
+    explicit MovingScene(std::span<const uint8_t> glb);
     ~MovingScene();
     MovingScene(const MovingScene&) = delete;
     MovingScene& operator=(const MovingScene&) = delete;
@@ -20,6 +23,8 @@ public:
     std::filesystem::path bakedAt(double seconds) const;
 
 private:
+    void compileSource() const;
+
     struct Folder;
     std::unique_ptr<Folder> folder_;
     std::filesystem::path source_, package_;

@@ -27,7 +27,7 @@ int write(const std::filesystem::path& folder, const std::string& name, const Gl
 /// Scenes of a size, in place of those with names; 0: none.
 struct Sizes
 {
-    uint32_t terrain = 0, boxes = 0, tube = 0;
+    uint32_t terrain = 0, boxes = 0, swarm = 0, tube = 0;
 };
 
 int run(const std::string& folder, const std::vector<std::string>& names, const Sizes& sizes)
@@ -40,6 +40,8 @@ int run(const std::string& folder, const std::vector<std::string>& names, const 
         return write(folder, "terrain", terrainScene(sizes.terrain));
     if (sizes.boxes != 0)
         return write(folder, "boxes", boxesScene(sizes.boxes));
+    if (sizes.swarm != 0)
+        return write(folder, "swarm", swarmScene(sizes.swarm));
     if (sizes.tube != 0)
         return write(folder, "tube", tubeScene(sizes.tube));
     for (const Scene& scene : allScenes())
@@ -84,11 +86,18 @@ int main(int argc, char** argv)
             ->check(CLI::Range(1, 1'000'000))
             ->excludes(some)
             ->excludes(terrain);
+    CLI::Option* const swarm =
+        app.add_option("--swarm", sizes.swarm, "instead write swarm.glb, this many boxes that change places")
+            ->check(CLI::Range(1, 1'000'000))
+            ->excludes(some)
+            ->excludes(terrain)
+            ->excludes(boxes);
     app.add_option("--tube", sizes.tube, "instead write tube.glb, a skinned tube of about this many triangles")
         ->check(CLI::Range(128, 10'000'000))
         ->excludes(some)
         ->excludes(terrain)
-        ->excludes(boxes);
+        ->excludes(boxes)
+        ->excludes(swarm);
     try
     {
         app.parse(argc, argv);

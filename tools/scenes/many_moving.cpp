@@ -22,6 +22,18 @@ void addSurroundings(GltfWriter& gltf, uint32_t material)
     gltf.addSun("sun", {-0.3f, -1, -0.2f}, {1, 1, 1}, 5);
     gltf.addCamera("view", {0, 6, 26}, {0, 3, 0}, 0.8f);
 }
+
+float part(double step, uint32_t i)
+{
+    return float(std::fmod(step * (i + 1), 1.0));
+}
+
+/// Incommensurable steps spread boxes evenly and never put two in one place (Roberts 2018).
+Vec3 boxPlace(uint32_t i)
+{
+    return {(part(0.8191725134, i) - 0.5f) * kSide / 2, 0.3f + 8 * part(0.6710436067, i),
+            (part(0.5497004779, i) - 0.5f) * kSide / 2};
+}
 } // namespace
 
 GltfWriter boxesScene(uint32_t count)
@@ -33,14 +45,36 @@ GltfWriter boxesScene(uint32_t count)
     const float r = std::sqrt(0.5f);
     for (uint32_t i = 0; i < count; ++i)
     {
-        // Incommensurable steps spread the boxes evenly and never put two in one place (Roberts 2018).
-        const auto part = [&](double step) { return float(std::fmod(step * (i + 1), 1.0)); };
-        const Vec3 at{(part(0.8191725134) - 0.5f) * kSide / 2, 0.3f + 8 * part(0.6710436067),
-                      (part(0.5497004779) - 0.5f) * kSide / 2};
-        const Vec3 to = at + Vec3{part(0.7548776662) - 0.5f, part(0.5698402910), part(0.6180339887) - 0.5f} * 2;
+        const Vec3 at = boxPlace(i);
+        const Vec3 to =
+            at + Vec3{part(0.7548776662, i) - 0.5f, part(0.5698402910, i), part(0.6180339887, i) - 0.5f} * 2;
         const uint32_t node = gltf.addNode("box", mesh, at);
         gltf.animate(node, "translation", {0, 1, 2}, {at.x, at.y, at.z, to.x, to.y, to.z, at.x, at.y, at.z});
         gltf.animate(node, "rotation", {0, 1, 2}, {0, 0, 0, 1, r, 0, 0, r, 0, 0, 0, 1});
+    }
+    return gltf;
+}
+
+GltfWriter swarmScene(uint32_t count)
+{
+    constexpr uint32_t kStops = 4;
+    constexpr uint64_t kPrime = 7919; // multiplied by it, neighbours go to places far apart
+    GltfWriter gltf;
+    const uint32_t white = gltf.addMaterial(matte("white", {0.8f, 0.8f, 0.8f}));
+    addSurroundings(gltf, white);
+    const uint32_t mesh = gltf.addMesh("box", box({-0.15f, -0.15f, -0.15f}, {0.15f, 0.15f, 0.15f}, 0), white);
+    for (uint32_t i = 0; i < count; ++i)
+    {
+        std::vector<float> times, places;
+        uint64_t place = i;
+        for (uint32_t stop = 0; stop <= kStops; ++stop)
+        {
+            const Vec3 at = boxPlace(stop == kStops ? i : uint32_t(place));
+            times.push_back(float(stop));
+            places.insert(places.end(), {at.x, at.y, at.z});
+            place = place * kPrime % count;
+        }
+        gltf.animate(gltf.addNode("box", mesh, boxPlace(i)), "translation", times, places);
     }
     return gltf;
 }

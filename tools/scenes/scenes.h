@@ -71,6 +71,9 @@ GltfWriter ballScene();
 /// `count` boxes that travel and turn over a ground. Not among allScenes().
 GltfWriter boxesScene(uint32_t count);
 
+/// `count` boxes that change places, within four seconds. Not among allScenes().
+GltfWriter swarmScene(uint32_t count);
+
 /// A tube of about `triangles` triangles that 32 joints bend. Not among allScenes().
 GltfWriter tubeScene(uint32_t triangles);
 
