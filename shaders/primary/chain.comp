@@ -63,7 +63,7 @@ vec3 meetSurface(Ray ray, Hit hit, inout ShadingPoint point, inout DiffusePoint 
     Bsdf b = v.bsdf;
     LobeProbabilities p = lobeProbabilities(b, v.wo);
     float scattered = p.diffuse + glossyProbability(b, p), mirror = mirrorProbability(b, p), rest = 1.0;
-    if (params.splits != 0u && mirror > 0.0 && mirror < kAllMirror)
+    if (hasFeature(kFeatureDeltaLobes) && params.splits != 0u && mirror > 0.0 && mirror < kAllMirror)
     {
         rest = 1.0 - mirror;
         split(ray, v, scattered, mirror, throughput, medium, point.width, random.x);
@@ -103,7 +103,7 @@ void main()
     ShadingPoint point = ShadingPoint(vec3(0.0), kNone, ray.direction, params.depth, vec3(1.0), vec2(0.0), params.width, 0.0, 0.0);
     if (params.depth == 0u)
         point.width += params.spread * length(ray.origin - params.eye); // the near plane is where it starts
-    if (params.splits != 0u)
+    if (hasFeature(kFeatureDeltaLobes) && params.splits != 0u)
     {
         uint second = ray.path + params.pixel_count;
         points[second] = ShadingPoint(vec3(0.0), kNone, ray.direction, params.depth, vec3(0.0), vec2(0.0), params.width, 0.0, 0.0);
