@@ -56,11 +56,11 @@ mat3 shadingFrame(Surface s, SurfaceMaterial m)
     return frameAround(s.normal);
 }
 
-PathVertex vertexAt(Surface s)
+PathVertex vertexAt(Surface s, SurfaceMaterial m)
 {
     PathVertex v;
     v.surface = s;
-    v.material = materialAt(s);
+    v.material = m;
     v.frame = shadingFrame(s, v.material);
     v.wo = -s.direction * v.frame;
     vec3 clearcoat_normal = vec3(0.0, 0.0, 1.0);
@@ -69,10 +69,15 @@ PathVertex vertexAt(Surface s)
     v.bsdf = bsdfAt(v.material, s.front, clearcoat_normal);
     return v;
 }
+PathVertex vertexAt(Surface s) { return vertexAt(s, materialAt(s)); }
 /// @param width metres, of the ray where it ends
 PathVertex vertexAt(Ray ray, Hit hit, float width) { return vertexAt(surfaceAt(ray, hit, width)); }
 PathVertex vertexAt(Ray ray, Hit hit) { return vertexAt(surfaceAt(ray, hit)); }
-PathVertex vertexAt(ShadingPoint point) { return vertexAt(surfaceAt(point)); }
+PathVertex vertexAt(ShadingPoint point)
+{
+    Surface s = surfaceAt(point);
+    return vertexAt(s, materialAt(s, point.base_color, point.metallic, point.roughness));
+}
 
 bool isUnlit(PathVertex v) { return (v.material.flags & kMaterialUnlit) != 0u; }
 

@@ -5,10 +5,11 @@
 
 ShadingPoint loadPoint(uint index)
 {
-    int row = int(4u * index);
+    int row = int(5u * index);
     uvec4 a = texelFetch(Points, row), b = texelFetch(Points, row + 1);
     vec4 c = uintBitsToFloat(texelFetch(Points, row + 2)), d = uintBitsToFloat(texelFetch(Points, row + 3));
-    return ShadingPoint(uintBitsToFloat(a.xyz), a.w, uintBitsToFloat(b.xyz), b.w, c.xyz, vec2(c.w, d.x), d.y, d.z, 0.0);
+    vec4 e = uintBitsToFloat(texelFetch(Points, row + 4));
+    return ShadingPoint(uintBitsToFloat(a.xyz), a.w, uintBitsToFloat(b.xyz), b.w, c.xyz, vec2(c.w, d.x), d.y, d.z, d.w, e.xyz, e.w);
 }
 
 #endif

@@ -46,11 +46,13 @@ struct ShadingPoint // where a pixel's light is to be found: first vertex after 
     uint depth;      // specular events before it
     vec3 throughput; // of the chain, 1/probability of its choices included
     vec2 barycentrics;
-    float width;  // metres, across the chain's last ray: of what textures show at once
-    float back;   // metres, back along that ray to where rays leave: off the surface by more than rounding
-    float unused; // whole texels
+    float width;     // metres, across the chain's last ray: of what textures show at once
+    float back;      // metres, back along that ray to where rays leave: off the surface by more than rounding
+    float roughness; // of the surface, textures applied, as the next two: so that nobody samples them again
+    vec3 base_color;
+    float metallic;
 };
-GPU_SIZE(ShadingPoint, 64);
+GPU_SIZE(ShadingPoint, 80);
 
 struct DiffusePoint // what a shading point shows of the irradiance that falls on it, so that nobody works it out again
 {
