@@ -211,6 +211,8 @@ GPU_CONST uint kFeatureIridescence = 262144u;
 GPU_CONST uint kFeatureDispersion = 524288u;
 GPU_CONST uint kFeatureDiffuseTransmission = 1048576u;
 GPU_CONST uint kFeatureTiles = 2097152u; // textures in tiled pages
+GPU_CONST uint kFeatureDeltaLobes =
+    4194304u; // mirrors, clear glass or smooth layers; textures may make some of any roughness
 
 struct SceneInfo // uniform block: what every kernel may need to know of the scene
 {

@@ -126,6 +126,7 @@ GlobalIllumination::GlobalIllumination(const Device& device, const SceneGpu& sce
 FrameTraits GlobalIllumination::traits() const
 {
     return {.has_specular = has_specular_,
+            .has_delta_lobes = scene_.hasFeature(gpu::kFeatureDeltaLobes),
             .has_mirrors = has_mirrors_,
             .reflects_roughly = scene_.reflectsRoughly(),
             .has_noisy_direct = direct_.isNoisy(),

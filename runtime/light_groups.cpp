@@ -25,12 +25,14 @@ void addCluster(LightGroups& result, std::span<const gpu::Light> lights, const s
     for (const uint32_t light : members)
         weights.push_back(lights[light].pmf);
     const double share = std::accumulate(weights.begin(), weights.end(), 0.0);
-    result.clusters.push_back(
-        {.first_pick = uint32_t(result.picks.size()), .pick_count = uint32_t(members.size()), .share = float(share)});
+    result.clusters.push_back({.first_pick = uint32_t(result.picks.size()),
+                               .pick_count = uint32_t(members.size()),
+                               .share = float(share),
+                               .unused = 0});
     const auto table = buildAliasTable(weights);
     for (size_t i = 0; i < members.size(); ++i)
     {
-        result.picks.push_back({members[i], table[i].threshold, members[table[i].alias]});
+        result.picks.push_back({members[i], table[i].threshold, members[table[i].alias], 0});
         result.densities[members[i]] = float(1 / share);
     }
 }

@@ -48,6 +48,15 @@ gpu::SceneInfo sceneInfo(const package::Package& package)
     }
     return info;
 }
+
+/// As shaders/lib/bsdf/layers.glsl decides; textures may lower both roughnesses to 0.
+bool mayHaveDeltaLobe(const gpu::Material& material)
+{
+    return material.roughness < gpu::kSmoothRoughness || material.metallic_roughness_texture != gpu::kNone ||
+           (material.clearcoat > 0 && (material.clearcoat_roughness < gpu::kSmoothRoughness ||
+                                       material.clearcoat_roughness_texture != gpu::kNone));
+}
+
 uint32_t materialFeatures(const gpu::Material& material)
 {
     const gpu::vec3& sheen = material.sheen_color;
@@ -88,6 +97,10 @@ uint32_t sceneFeatures(const package::Package& package)
         features |= materialFeatures(material);
     if (isAnimated(package, lumicut::fb::ChannelTarget::MaterialMetallic))
         features |= gpu::kFeatureMetal | gpu::kFeatureSpecular;
+    const bool any_roughness = isAnimated(package, lumicut::fb::ChannelTarget::MaterialRoughness);
+    if ((features & gpu::kFeatureSpecular) != 0 &&
+        (any_roughness || std::ranges::any_of(package.materials(), mayHaveDeltaLobe)))
+        features |= gpu::kFeatureDeltaLobes;
     if (std::ranges::any_of(package.textureRefs(),
                             [](const gpu::TextureRef& ref) { return (ref.sampling & gpu::kSampleUv1) != 0; }))
         features |= gpu::kFeatureSecondUv;

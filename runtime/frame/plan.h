@@ -8,6 +8,7 @@
 struct FrameTraits
 {
     bool has_specular = false;      // mirrors, glass, rough reflection
+    bool has_delta_lobes = false;   // mirrors, glass or smooth layers: without any there are no chains and no caustics
     bool has_mirrors = false;       // delta events that are more than the sheen of a smooth layer
     bool reflects_roughly = false;  // some reflection is so rough that spherical harmonics can replace rays
     bool has_noisy_direct = false;  // lights with an area, or several of them: a ray samples a part

@@ -60,18 +60,21 @@ DirectStage::DirectStage(const Device& device, const SceneGpu& scene, uint32_t w
       shadow_rays_(device.texelArray<gpu::ShadowRay>("direct.shadow_rays", width * height * path_count, scratch)),
       emitter_rays_(device.array<gpu::EmitterRay>("direct.emitter_rays", width * height * path_count, scratch)),
       hits_(device.texelArray<gpu::Hit>("direct.hits", width * height * path_count, scratch)),
-      clusters_(device.array<gpu::LightCluster>("direct.clusters", countOf(clusters_of_) + 2)),
-      picks_(device.array<gpu::LightPick>("direct.picks", std::max<size_t>(scene.lights().size(), 1))),
+      clusters_(device.texelArray<gpu::LightCluster>("direct.clusters", countOf(clusters_of_) + 2)),
+      picks_(device.texelArray<gpu::LightPick>("direct.picks", std::max<size_t>(scene.lights().size(), 1))),
       densities_(device.array<float>("direct.densities", std::max<size_t>(scene.lights().size(), 1))),
       rest_size_(device.array<gpu::QueueSize>("direct.rest_size", 1)), has_area_lights_(scene.hasAreaLights()),
       is_noisy_(has_area_lights_ || hasChoice(scene.lights()))
 {
     const uint32_t clusters = countOf(clusters_of_);
     if (clusters > 1)
+    {
+        sample_seen_ = device.kernel("direct/sample", scene.constants(), {{"kKnowsSeen", 1}});
         survey_.emplace(device, scene, clusters, width, height, path_count, scratch);
+    }
     rest_rays_ =
         device.texelArray<gpu::ShadowRay>("direct.rest_rays", survey_ ? width * height * path_count : 1, scratch);
-    no_tiles_ = device.array<gpu::TileLights>("direct.no_tiles", 1);
+    no_tiles_ = device.texelArray<gpu::TileLights>("direct.no_tiles", 1);
 }
 
 uint64_t DirectStage::scratchBytes(const SceneGpu& scene, uint32_t width, uint32_t height, uint32_t path_count)
@@ -132,7 +135,6 @@ void DirectStage::recordSample(Recorder& rec, const RayStage& rays, const Input&
                                        .light_sample_count = in.light_sample_count,
                                        .light_seed = in.seed + uint32_t(group.kind) * kGroupSeed,
                                        .first_cluster = group.first_cluster,
-                                       .knows_seen = several,
                                        .cluster_count = group.cluster_count,
                                        .candidate_count = group.one_place ? 1 : in.candidate_count,
                                        .traces_bsdf_samples = last && has_area_lights_,
@@ -142,7 +144,7 @@ void DirectStage::recordSample(Recorder& rec, const RayStage& rays, const Input&
                                        .emitters_high = emitters_.high};
         rays.reset(rec, shadow_size_);
         rays.reset(rec, rest_size_);
-        rec.run(sample_, in.point_count, params,
+        rec.run(several ? sample_seen_ : sample_, in.point_count, params,
                 {{"Points", in.points},
                  {"ShadowQueue", shadow_size_},
                  {"ShadowRays", shadow_rays_},

@@ -48,7 +48,7 @@ private:
     std::optional<uint64_t> table_version_; // that they were made of
     uint32_t width_, height_;
     EmitterBox emitters_;
-    Kernel sample_, emitted_;
+    Kernel sample_, sample_seen_, emitted_; // sample_seen_: of lamps in several clusters
     RayQueue emitter_queue_;
     Buffer shadow_size_, shadow_rays_, emitter_rays_, hits_, clusters_, picks_, densities_;
     Buffer rest_size_, rest_rays_, no_tiles_;

@@ -14,7 +14,7 @@ GatherStage::GatherStage(const Device& device, const SceneGpu& scene, uint32_t m
       states_(device.array<gpu::GatherState>("gather.states", uint64_t(max_samples) * max_rays_per_sample, scratch)),
       gathered_(device.array<gpu::Gathered>("gather.gathered", uint64_t(max_samples) * max_rays_per_sample, scratch)),
       directions_(device.array<uint32_t>("gather.directions", uint64_t(max_samples) * max_rays_per_sample, scratch)),
-      no_legs_(device.array<gpu::Leg>("gather.no_legs", gpu::kLegCount)),
+      no_legs_(device.texelArray<gpu::Leg>("gather.no_legs", gpu::kLegCount)),
       harmonics_(device.texelArray<gpu::SampleHarmonics>("gather.harmonics", scene.reflectsRoughly() ? max_samples : 1))
 {
 }

@@ -10,8 +10,8 @@ GlossyStage::GlossyStage(const Device& device, const SceneGpu& scene, uint32_t m
       next_queue_(device, "glossy.next_queue", max_pixels, scratch),
       hits_(device.texelArray<gpu::Hit>("glossy.hits", max_pixels, scratch)),
       states_(device.array<gpu::GatherState>("glossy.states", max_pixels, scratch)),
-      lobes_(device.upload<gpu::GlossyLobe>("glossy.lobes",
-                                            scene.reflectsRoughly() ? glossyLobes() : std::vector<gpu::GlossyLobe>(1))),
+      lobes_(device.uploadTexels<gpu::GlossyLobe>(
+          "glossy.lobes", scene.reflectsRoughly() ? glossyLobes() : std::vector<gpu::GlossyLobe>(1))),
       shares_(device.array<float>("glossy.shares", scene.reflectsRoughly() ? max_pixels : 1, scratch))
 {
 }

@@ -1,7 +1,7 @@
 #include "runtime/stages/legs.h"
 
 LegsStage::LegsStage(const Device& device)
-    : pick_(device.kernel("legs/pick")), legs_(device.array<gpu::Leg>("legs.legs", gpu::kLegCount))
+    : pick_(device.kernel("legs/pick")), legs_(device.texelArray<gpu::Leg>("legs.legs", gpu::kLegCount))
 {
 }
 

@@ -18,7 +18,7 @@ LightSurvey::LightSurvey(const Device& device, const SceneGpu& scene, uint32_t m
           "direct.survey_rays", uint64_t(tile_count_) * most_clusters * gpu::kSurveyRays, scratch)),
       arrived_(device.array<gpu::vec3>("direct.survey_arrived",
                                        uint64_t(tile_count_) * most_clusters * gpu::kSurveyRays, scratch)),
-      tiles_(device.array<gpu::TileLights>("direct.tiles", tile_count_, scratch))
+      tiles_(device.texelArray<gpu::TileLights>("direct.tiles", tile_count_, scratch))
 {
 }
 

@@ -4,7 +4,7 @@
 
 PrimaryStage::PrimaryStage(const Device& device, const SceneGpu& scene, uint32_t max_pixels, bool splits,
                            const Scratch& scratch)
-    : has_specular_(scene.hasFeature(gpu::kFeatureSpecular)), splits_(splits),
+    : has_delta_lobes_(scene.hasFeature(gpu::kFeatureDeltaLobes)), splits_(splits),
       generate_(device.kernel("primary/generate")), chain_(device.kernel("primary/chain", scene.constants())),
       queue_(device, "primary.queue", max_pixels * (splits ? 2 : 1), scratch),
       next_queue_(device, "primary.next_queue", max_pixels * (splits ? 2 : 1), scratch),
@@ -33,7 +33,7 @@ SurfaceBuffers PrimaryStage::record(Recorder& rec, const RayStage& rays, const I
     const RayQueue* queue = &queue_;
     const RayQueue* next = &next_queue_;
     const float width = textureWidth(in.camera);
-    const uint32_t depth_limit = has_specular_ ? in.specular_depth : 0;
+    const uint32_t depth_limit = has_delta_lobes_ ? in.specular_depth : 0;
     for (uint32_t depth = 0; depth <= depth_limit; ++depth)
     {
         const gpu::ChainParams params{.depth = depth,

@@ -27,7 +27,7 @@ public:
     SurfaceBuffers record(Recorder& rec, const RayStage& rays, const Input& in) const;
 
 private:
-    bool has_specular_, splits_;
+    bool has_delta_lobes_, splits_;
     Kernel generate_, chain_;
     RayQueue queue_, next_queue_;
     Buffer hits_, points_, diffuse_points_;

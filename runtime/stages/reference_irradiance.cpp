@@ -57,7 +57,7 @@ ReferenceIrradiance::ReferenceIrradiance(const Device& device, const SceneGpu& s
       queue_(device, "reference_irradiance.queue", max_samples * pass_rays_),
       states_(device.array<gpu::GatherState>("reference_irradiance.states", uint64_t(max_samples) * pass_rays_)),
       directions_(device.array<uint32_t>("reference_irradiance.directions", uint64_t(max_samples) * pass_rays_)),
-      no_legs_(device.array<gpu::Leg>("reference_irradiance.no_legs", gpu::kLegCount))
+      no_legs_(device.texelArray<gpu::Leg>("reference_irradiance.no_legs", gpu::kLegCount))
 {
 }
 

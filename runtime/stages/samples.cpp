@@ -51,7 +51,7 @@ SamplesStage::SamplesStage(const Device& device, uint32_t width, uint32_t height
       seed_flags_(device.array<uint32_t>("samples.seed_flags", point_count_)),
       seeds_(device.array<uint32_t>("samples.seeds", point_count_)),
       cluster_size_(device.array<gpu::QueueSize>("samples.cluster_size", 1)),
-      clusters_(device.array<gpu::Cluster>("samples.clusters", max_samples)),
+      clusters_(device.texelArray<gpu::Cluster>("samples.clusters", max_samples)),
       cluster_spheres_(device.array<gpu::vec4>("samples.cluster_spheres", max_samples)),
       sums_(device.array<gpu::ClusterSums>("samples.sums", max_samples)),
       owners_(device.array<gpu::uvec2>("samples.owners", point_count_)),

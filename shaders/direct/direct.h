@@ -18,7 +18,6 @@ struct DirectParams
     uint light_sample_count; // light samples a shading point and group; each contributes 1 / light_sample_count
     uint light_seed;         // the same for all dispatches of a group
     uint first_cluster;      // of the group
-    uint knows_seen;         // 1: it has several, of which tiles know what they see; 0: it has one
     uint cluster_count;
     uint candidate_count;     // light samples of which one gets the shadow ray
     uint traces_bsdf_samples; // 1: this dispatch also sends the BSDF-sampled rays
@@ -27,7 +26,7 @@ struct DirectParams
     vec3 emitters_low; // metres: what does not pass the box between them meets no emitter
     vec3 emitters_high;
 };
-GPU_SIZE(DirectParams, 76);
+GPU_SIZE(DirectParams, 72);
 
 struct EmittedParams
 {

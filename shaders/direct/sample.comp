@@ -21,33 +21,54 @@ layout(set = 1, binding = 2, scalar) writeonly buffer ShadowRays { ShadowRay sha
 layout(set = 1, binding = 3, scalar) buffer EmitterQueue { QueueSize emitter_queue; };
 layout(set = 1, binding = 4, scalar) writeonly buffer Rays { Ray rays[]; };
 layout(set = 1, binding = 5, scalar) writeonly buffer EmitterRays { EmitterRay emitter_rays[]; };
-layout(set = 1, binding = 6, scalar) readonly buffer Picks { LightPick picks[]; };
-layout(set = 1, binding = 7, scalar) readonly buffer Clusters { LightCluster clusters[]; };
-layout(set = 1, binding = 8, scalar) readonly buffer Tiles { TileLights tiles[]; };
+layout(set = 1, binding = 6) uniform usamplerBuffer Picks;
+layout(set = 1, binding = 7) uniform usamplerBuffer Clusters;
+layout(set = 1, binding = 8) uniform usamplerBuffer Tiles;
 layout(set = 1, binding = 9, scalar) buffer RestQueue { QueueSize rest_queue; };
 layout(set = 1, binding = 10, scalar) writeonly buffer RestRays { ShadowRay rest_rays[]; };
 
 #include "shaders/lib/light_cluster.glsl"
 #include "shaders/lib/point.glsl"
 
+layout(constant_id = 3) const bool kKnowsSeen = false; // the group has several clusters, of which tiles know what they see
+
 const uint kSeen = 0u, kRest = 1u; // what a shadow ray is for
 
-/// Cumulative probability up to the end of a cluster.
-float endOf(uint tile, uint set, uint cluster) { return set == kSeen ? tiles[tile].seen[cluster] : tiles[tile].rest[cluster]; }
+// TileLights as texels of four clusters: cumulative probabilities of both sets, then what is visible.
+const uint kSetTexels = kMostClusters / 4u, kTileTexels = 3u * kSetTexels;
 
-/// The cluster that holds u in [0, 1).
-uint pickCluster(uint tile, uint set, float u)
+float tileEntry(uint tile, uint set, uint cluster)
 {
-    uint low = 0u, high = params.cluster_count - 1u;
-    while (low < high)
+    return uintBitsToFloat(texelFetch(Tiles, int(kTileTexels * tile + kSetTexels * set + cluster / 4u))[cluster % 4u]);
+}
+
+/// Whether the tile has any cluster of this set: otherwise probabilities end at 0, not at 1.
+bool hasClusters(uint tile, uint set) { return tileEntry(tile, set, params.cluster_count - 1u) > 0.0; }
+float visibleOf(uint tile, uint cluster) { return tileEntry(tile, 2u, cluster); }
+
+/// The cluster that holds u in [0, 1) @param probability of it
+uint pickCluster(uint tile, uint set, float u, out float probability)
+{
+    uint cluster = 0u;
+    float begin = 0.0, end = 1.0;
+    uint last = params.cluster_count - 1u; // takes what is left
+    for (uint first = 0u;;) // tests at its end: see lib/bvh.glsl why
     {
-        uint middle = (low + high) / 2u;
-        if (u < endOf(tile, set, middle))
-            high = middle;
-        else
-            low = middle + 1u;
+        vec4 ends = uintBitsToFloat(texelFetch(Tiles, int(kTileTexels * tile + kSetTexels * set + first / 4u)));
+        bvec4 counts = lessThan(first + uvec4(0u, 1u, 2u, 3u), uvec4(last));
+        bvec4 below = lessThanEqual(ends, vec4(u));
+        vec4 begins = mix(vec4(0.0), ends, bvec4(uvec4(counts) & uvec4(below)));
+        ends = mix(vec4(1.0), ends, bvec4(uvec4(counts) & uvec4(not(below))));
+        uvec4 passed = uvec4(counts) & uvec4(below);
+        cluster += passed.x + passed.y + passed.z + passed.w;
+        begin = max(begin, max(max(begins.x, begins.y), max(begins.z, begins.w)));
+        end = min(end, min(min(ends.x, ends.y), min(ends.z, ends.w)));
+        first += 4u;
+        if (first >= last)
+            break;
     }
-    return low;
+    probability = end - begin;
+    return cluster;
 }
 
 /// The shadow ray of one set of clusters goes to one of several candidates.
@@ -60,14 +81,13 @@ void sampleSet(uint set, uint candidate_count, PathVertex v, vec3 throughput, ui
     {
         uint cluster = 0u;
         float probability = 1.0, visible = 1.0;
-        if (params.knows_seen != 0u)
+        if (kKnowsSeen)
         {
-            cluster = pickCluster(tile, set, (float(k) + turn) / float(candidate_count));
-            probability = endOf(tile, set, cluster) - (cluster > 0u ? endOf(tile, set, cluster - 1u) : 0.0);
-            visible = tiles[tile].visible[cluster];
+            cluster = pickCluster(tile, set, (float(k) + turn) / float(candidate_count), probability);
+            visible = visibleOf(tile, cluster);
         }
         Sampler s = vertexSampler(path, depth, params.point_count, index * params.candidate_count + k, params.light_seed + set);
-        LightSample light = sampleCluster(clusters[params.first_cluster + cluster], v.surface.position, nextLightDraws(s));
+        LightSample light = sampleCluster(loadCluster(params.first_cluster + cluster), v.surface.position, nextLightDraws(s));
         vec3 candidate = throughput * unshadowed(v, light) / probability;
         float weight = luminance(candidate) * visible;
         if (weight > 0.0)
@@ -126,19 +146,22 @@ void main()
     bsdf_sampler.dimension += kLightPairs;
     vec2 u = nextPair(bsdf_sampler), choice = nextPair(bsdf_sampler);
 
-    uint set_count = 1u, tile = 0u;
-    if (params.knows_seen != 0u)
+    uint tile = 0u;
+    if (kKnowsSeen)
     {
-        uint plane = path / params.pixel_count, height = params.pixel_count / params.width, bits = hash(hash(path, index), params.seed);
+        uint plane = quotient(path, params.pixel_count), height = quotient(params.pixel_count, params.width), bits = hash(hash(path, index), params.seed);
         tile = plane * tileColumns(params.width) * tileColumns(height) +
                tileNear(path - plane * params.pixel_count, params.width, height, vec2(bits & 0xffffu, bits >> 16) / 65536.0);
-        set_count = 2u;
     }
-    for (uint set = 0u; set < set_count; ++set)
-        if (params.knows_seen == 0u || endOf(tile, set, params.cluster_count - 1u) > 0.0)
+    for (uint set = kSeen;;)
+    {
+        if (!kKnowsSeen || hasClusters(tile, set))
             sampleSet(set, set == kSeen ? params.candidate_count : (params.candidate_count + 1u) / 2u, v, throughput, path, point.depth + 1u, index, tile, choice.y);
+        if (!kKnowsSeen || set++ == kRest)
+            break;
+    }
 
-    if (params.traces_bsdf_samples == 0u)
+    if (!hasFeature(kFeatureTriangleLights | kFeatureEnvironment) || params.traces_bsdf_samples == 0u)
         return;
     BsdfSample next = sampleBsdf(v.bsdf, v.wo, choice.x, u);
     vec3 wi = v.frame * next.wi;

@@ -10,13 +10,14 @@
 layout(local_size_x = kRaysGroupSize) in;
 layout(push_constant, scalar) uniform Params { SurveyParams params; };
 
-layout(set = 1, binding = 0, scalar) readonly buffer Points { ShadingPoint points[]; };
-layout(set = 1, binding = 1, scalar) readonly buffer Clusters { LightCluster clusters[]; };
-layout(set = 1, binding = 2, scalar) readonly buffer Picks { LightPick picks[]; };
+layout(set = 1, binding = 0) uniform usamplerBuffer Points;
+layout(set = 1, binding = 1) uniform usamplerBuffer Clusters;
+layout(set = 1, binding = 2) uniform usamplerBuffer Picks;
 layout(set = 1, binding = 3, scalar) buffer ShadowQueue { QueueSize shadow_queue; };
 layout(set = 1, binding = 4, scalar) writeonly buffer ShadowRays { ShadowRay shadow_rays[]; };
 layout(set = 1, binding = 5, scalar) writeonly buffer Arrived { vec3 arrived[]; }; // by ray, cluster, tile
 #include "shaders/lib/light_cluster.glsl"
+#include "shaders/lib/point.glsl"
 
 /// A random point of the tile.
 uint pointOf(uint tile, vec2 u)
@@ -39,13 +40,13 @@ void main()
     Sampler s = Sampler(hash(params.seed, tile * params.cluster_count + cluster), params.first_sample * kSurveyRays + ray, 0u);
     uint path = pointOf(tile, nextPair(s));
     vec3 result = vec3(0.0);
-    if (path < params.point_count && points[path].slot != kNone)
+    if (path < params.point_count && loadPoint(path).slot != kNone)
     {
-        ShadingPoint point = points[path];
+        ShadingPoint point = loadPoint(path);
         PathVertex v = vertexAt(point);
         if (hasDensity(v.bsdf))
         {
-            LightSample light = sampleCluster(clusters[params.first_cluster + cluster], v.surface.position, nextLightDraws(s));
+            LightSample light = sampleCluster(loadCluster(params.first_cluster + cluster), v.surface.position, nextLightDraws(s));
             result.y = luminance(point.throughput * unshadowed(v, light));
             if (result.y > 0.0 && !isinf(result.y))
                 shadow_rays[atomicAdd(shadow_queue.count, 1u)] =

@@ -16,16 +16,18 @@ struct LightPick // Walker's alias method within a cluster
     uint light; // taken where a second uniform number < threshold
     float threshold;
     uint otherwise; // light taken else
+    uint unused;    // whole texels
 };
-GPU_SIZE(LightPick, 12);
+GPU_SIZE(LightPick, 16);
 
 struct LightCluster // lights that are near each other, so that a surface mostly sees all or none of them
 {
     uint first_pick; // its part of the picks
     uint pick_count;
     float share; // of all lights' pmf
+    uint unused; // whole texels
 };
-GPU_SIZE(LightCluster, 12);
+GPU_SIZE(LightCluster, 16);
 
 /// What a tile knows of the clusters. Those that a ray has reached are "seen", the others are "the rest".
 struct TileLights

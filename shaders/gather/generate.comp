@@ -15,8 +15,16 @@ layout(set = 1, binding = 1, scalar) readonly buffer Samples { Sample samples[];
 layout(set = 1, binding = 2, scalar) buffer Queue { QueueSize queue; };
 layout(set = 1, binding = 3, scalar) writeonly buffer Rays { Ray rays[]; };
 layout(set = 1, binding = 5, scalar) writeonly buffer States { GatherState states[]; };
-layout(set = 1, binding = 6, scalar) readonly buffer Legs { Leg legs[]; };
+layout(set = 1, binding = 6) uniform usamplerBuffer Legs;
 layout(set = 1, binding = 7, scalar) writeonly buffer Directions { uint directions[]; }; // octahedral, by ray
+
+vec3 legFrom(uint index) { return uintBitsToFloat(texelFetch(Legs, int(2u * index)).xyz); }
+
+Leg loadLeg(uint index)
+{
+    uvec4 a = texelFetch(Legs, int(2u * index)), b = texelFetch(Legs, int(2u * index + 1u));
+    return Leg(uintBitsToFloat(a.xyz), a.w, uintBitsToFloat(b.xyz), uintBitsToFloat(b.w));
+}
 
 /// Sums by cell the light that the legs bring to x.
 void countLegs(vec3 x, vec3 normal, mat3 frame, uint thread)
@@ -26,7 +34,7 @@ void countLegs(vec3 x, vec3 normal, mat3 frame, uint thread)
     vec2 sum = vec2(0.0);
     for (uint k = 0u; k < kEach; ++k)
     {
-        weights[k] = params.leg_count > 0u ? legWeight(legs[thread + k * kRaysGroupSize], x, normal) : 0.0;
+        weights[k] = params.leg_count > 0u ? legWeight(loadLeg(thread + k * kRaysGroupSize), x, normal) : 0.0;
         sum += vec2(weights[k], square(weights[k]));
     }
     for (uint c = thread; c < kAimCells; c += kRaysGroupSize)
@@ -42,7 +50,7 @@ void countLegs(vec3 x, vec3 normal, mat3 frame, uint thread)
     for (uint k = 0u; k < kEach; ++k)
         if (weights[k] > 0.0)
         {
-            uint cell = aimCell(normalize(legs[thread + k * kRaysGroupSize].from - x) * frame);
+            uint cell = aimCell(normalize(legFrom(thread + k * kRaysGroupSize) - x) * frame);
             atomicAdd(aim_counts[cell], uint(weights[k] / aim_sums[0].x * float(kAimWhole) + 0.5));
         }
     barrier();

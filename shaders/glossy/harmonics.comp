@@ -18,7 +18,7 @@ layout(set = 1, binding = 2) uniform usamplerBuffer Samples;
 layout(set = 1, binding = 3) uniform usamplerBuffer Points;
 layout(set = 1, binding = 4, scalar) buffer Radiance { vec3 radiance[]; };
 layout(set = 1, binding = 6) uniform usamplerBuffer Harmonics; // SampleHarmonics, a texel a channel
-layout(set = 1, binding = 7, scalar) readonly buffer Lobes { GlossyLobe lobes[]; };
+layout(set = 1, binding = 7) uniform usamplerBuffer Lobes; // GlossyLobe, a texel each
 layout(set = 1, binding = 8, scalar) writeonly buffer Shares { float shares[]; }; // of glossy light that needs no ray
 layout(set = 1, binding = 9, scalar) readonly buffer Nearby { uint nearby[]; };
 layout(set = 1, binding = 10, scalar) readonly buffer NearbyCounts { uint nearby_counts[]; };
@@ -27,6 +27,8 @@ layout(set = 1, binding = 10, scalar) readonly buffer NearbyCounts { uint nearby
 #include "shaders/lib/sample.glsl"
 #include "shaders/lib/tree.glsl"
 
+vec4 loadLobe(uint index) { return uintBitsToFloat(texelFetch(Lobes, int(index))); }
+
 /// The table's entry between its neighbours.
 GlossyLobe lobeAt(float roughness, float cosine)
 {
@@ -34,17 +36,10 @@ GlossyLobe lobeAt(float roughness, float cosine)
                    clamp(cosine, 0.0, 1.0) * float(kLobeCosines - 1u));
     uvec2 cell = min(uvec2(at), uvec2(kLobeRoughnesses, kLobeCosines) - 2u);
     at -= vec2(cell);
-    GlossyLobe sum = GlossyLobe(0.0, 0.0, 0.0, 0.0);
-    for (uint corner = 0u; corner < 4u; ++corner)
-    {
-        uvec2 step_ = uvec2(corner & 1u, corner >> 1);
-        vec2 near = mix(1.0 - at, at, equal(step_, uvec2(1u)));
-        float weight = near.x * near.y;
-        GlossyLobe lobe = lobes[(cell.x + step_.x) * kLobeCosines + cell.y + step_.y];
-        sum = GlossyLobe(sum.height + weight * lobe.height, sum.concentration + weight * lobe.concentration,
-                         sum.scale + weight * lobe.scale, sum.bias + weight * lobe.bias);
-    }
-    return sum;
+    uint first = cell.x * kLobeCosines + cell.y;
+    vec4 lobe = (1.0 - at.x) * (1.0 - at.y) * loadLobe(first) + at.x * (1.0 - at.y) * loadLobe(first + kLobeCosines) +
+                (1.0 - at.x) * at.y * loadLobe(first + 1u) + at.x * at.y * loadLobe(first + kLobeCosines + 1u);
+    return GlossyLobe(lobe.x, lobe.y, lobe.z, lobe.w);
 }
 
 /// Light that a sample sends into the lobe, times its evenLight.

@@ -83,39 +83,46 @@ void addRareLayers(Surface s, inout SurfaceMaterial m)
     }
 }
 
-/// The material of gpu_scene.h at one point.
-SurfaceMaterial materialAt(Surface s)
+/// The material of gpu_scene.h at one point of which base colour, metallic and roughness are known.
+SurfaceMaterial materialAt(Surface s, vec3 base_color, float metallic, float roughness)
 {
     SurfaceMaterial m;
     m.flags = loadMaterial(s.material).flags;
-    m.base_color = loadMaterial(s.material).base_color * s.color.rgb;
-    m.metallic = loadMaterial(s.material).metallic;
-    m.roughness = loadMaterial(s.material).roughness;
+    m.base_color = base_color;
+    m.metallic = metallic;
+    m.roughness = roughness;
     m.ior = loadMaterial(s.material).ior;
     m.emission = surfaceEmission(s.material, s.uv0, s.uv1, s.footprints);
     m.transmission = loadMaterial(s.material).transmission * rareTexel(loadMaterial(s.material).transmission_texture, s).r;
     m.specular = loadMaterial(s.material).specular * rareTexel(loadMaterial(s.material).specular_texture, s).a;
     m.specular_color = loadMaterial(s.material).specular_color * rareTexel(loadMaterial(s.material).specular_color_texture, s).rgb;
+    addRareLayers(s, m);
+    return m;
+}
 
+/// The same where nothing is known yet.
+SurfaceMaterial materialAt(Surface s)
+{
+    vec3 base_color = loadMaterial(s.material).base_color * s.color.rgb;
+    float metallic = loadMaterial(s.material).metallic, roughness = loadMaterial(s.material).roughness;
     uint ref = loadMaterial(s.material).base_color_texture;
     // Coarse levels mix in the colours of texels that are cut away, where any are.
-    bool cut_away = (m.flags & (kMaterialAlphaMask | kMaterialAlphaBlend)) != 0u;
+    bool cut_away = (loadMaterial(s.material).flags & (kMaterialAlphaMask | kMaterialAlphaBlend)) != 0u;
     if (hasFeature(kFeatureBaseColorMaps) && ref != kNone)
     {
         Footprints footprints = s.footprints;
         if (cut_away)
             footprints = kPoint;
-        m.base_color *= sampleTexture(ref, s.uv0, s.uv1, footprints).rgb;
+        base_color *= sampleTexture(ref, s.uv0, s.uv1, footprints).rgb;
     }
     ref = loadMaterial(s.material).metallic_roughness_texture;
     if (hasFeature(kFeatureMetallicRoughnessMaps) && ref != kNone)
     {
         vec4 texel = sampleTexture(ref, s.uv0, s.uv1, s.footprints);
-        m.roughness *= texel.g;
-        m.metallic *= texel.b;
+        roughness *= texel.g;
+        metallic *= texel.b;
     }
-    addRareLayers(s, m);
-    return m;
+    return materialAt(s, base_color, metallic, roughness);
 }
 
 bool emits(Surface s) { return s.front || (loadMaterial(s.material).flags & kMaterialDoubleSided) != 0u; }

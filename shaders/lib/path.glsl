@@ -3,6 +3,7 @@
 #ifndef LIB_PATH_GLSL
 #define LIB_PATH_GLSL
 #include "shaders/lib/bsdf.glsl"
+#include "shaders/lib/finish.glsl"
 #include "shaders/lib/lights.glsl"
 #include "shaders/lib/random.glsl"
 #include "shaders/lib/shading_point.glsl"
@@ -56,11 +57,11 @@ mat3 shadingFrame(Surface s, SurfaceMaterial m)
     return frameAround(s.normal);
 }
 
-PathVertex vertexAt(Surface s)
+PathVertex vertexAt(Surface s, SurfaceMaterial m)
 {
     PathVertex v;
     v.surface = s;
-    v.material = materialAt(s);
+    v.material = m;
     v.frame = shadingFrame(s, v.material);
     v.wo = -s.direction * v.frame;
     vec3 clearcoat_normal = vec3(0.0, 0.0, 1.0);
@@ -69,10 +70,16 @@ PathVertex vertexAt(Surface s)
     v.bsdf = bsdfAt(v.material, s.front, clearcoat_normal);
     return v;
 }
+PathVertex vertexAt(Surface s) { return vertexAt(s, materialAt(s)); }
 /// @param width metres, of the ray where it ends
 PathVertex vertexAt(Ray ray, Hit hit, float width) { return vertexAt(surfaceAt(ray, hit, width)); }
 PathVertex vertexAt(Ray ray, Hit hit) { return vertexAt(surfaceAt(ray, hit)); }
-PathVertex vertexAt(ShadingPoint point) { return vertexAt(surfaceAt(point)); }
+PathVertex vertexAt(ShadingPoint point)
+{
+    Surface s = surfaceAt(point);
+    vec2 finish = unpackFinish(point.finish);
+    return vertexAt(s, materialAt(s, point.base_color, finish.y, finish.x));
+}
 
 bool isUnlit(PathVertex v) { return (v.material.flags & kMaterialUnlit) != 0u; }
 

@@ -128,8 +128,13 @@ vec4 sampleTexture(uint ref_index, vec2 uv0, vec2 uv1, Footprints footprints)
         return sampleLevel(ref, st, 0.0);
     Lookups lookups = lookupsFor(ref, second ? footprints.uv1 : footprints.uv0);
     vec4 sum = vec4(0.0);
-    for (float k = 0.5; k < lookups.count; k += 1.0)
+    for (float k = 0.5;;) // tests at its end: see lib/bvh.glsl why
+    {
         sum += sampleLevel(ref, st + (k / lookups.count - 0.5) * lookups.along, lookups.level);
+        k += 1.0;
+        if (k >= lookups.count)
+            break;
+    }
     return sum / lookups.count;
 }
 vec4 sampleTexture(uint ref_index, vec2 uv0, vec2 uv1) { return sampleTexture(ref_index, uv0, uv1, kPoint); }

@@ -67,7 +67,7 @@ vec3 meetSurface(Ray ray, Hit hit, inout ShadingPoint point, inout DiffusePoint 
     Bsdf b = v.bsdf;
     LobeProbabilities p = lobeProbabilities(b, v.wo);
     float scattered = p.diffuse + glossyProbability(b, p), mirror = mirrorProbability(b, p), rest = 1.0;
-    if (params.splits != 0u && mirror > 0.0 && mirror < kAllMirror)
+    if (hasFeature(kFeatureDeltaLobes) && params.splits != 0u && mirror > 0.0 && mirror < kAllMirror)
     {
         rest = 1.0 - mirror;
         split(ray, v, scattered, mirror, throughput, medium, point.width, random.x);
@@ -78,7 +78,7 @@ vec3 meetSurface(Ray ray, Hit hit, inout ShadingPoint point, inout DiffusePoint 
         throughput /= hasDeltaLobe(b) ? scattered / rest : 1.0;
         vec3 reflectance = throughput * diffuseReflectance(b, max(0.0, -dot(s.normal, direction)));
         point = ShadingPoint(s.position, hit.slot, direction, params.depth, throughput, hit.barycentrics, point.width,
-                             s.back, point.mirror);
+                             s.back, point.mirror, v.material.base_color, packFinish(v.material.roughness, v.material.metallic));
         // Irradiance will be that of the smooth normal: even light over its hemisphere gives a bent one this much of it.
         reflectance *= 0.5 + 0.5 * dot(s.normal, s.smooth_normal);
         diffuse = DiffusePoint(s.position - min(clearance(s), s.back) * direction, unitToOctahedral(s.smooth_normal), reflectance);
@@ -106,13 +106,15 @@ void main()
         return;
     Ray ray = loadRay(i);
     Hit hit = loadHit(i);
-    ShadingPoint point = ShadingPoint(vec3(0.0), kNone, ray.direction, params.depth, vec3(1.0), vec2(0.0), params.width, 0.0, kNoMirror);
+    ShadingPoint point =
+        ShadingPoint(vec3(0.0), kNone, ray.direction, params.depth, vec3(1.0), vec2(0.0), params.width, 0.0, kNoMirror, vec3(0.0), 0u);
     if (params.depth == 0u)
         point.width += params.spread * length(ray.origin - params.eye); // the near plane is where it starts
-    if (params.splits != 0u)
+    if (hasFeature(kFeatureDeltaLobes) && params.splits != 0u)
     {
         uint second = ray.path + params.pixel_count;
-        points[second] = ShadingPoint(vec3(0.0), kNone, ray.direction, params.depth, vec3(0.0), vec2(0.0), params.width, 0.0, kNoMirror);
+        points[second] =
+            ShadingPoint(vec3(0.0), kNone, ray.direction, params.depth, vec3(0.0), vec2(0.0), params.width, 0.0, kNoMirror, vec3(0.0), 0u);
         diffuse_points[second] = DiffusePoint(vec3(0.0), vec2(0.0), vec3(0.0));
         radiance[second] = vec3(0.0);
     }

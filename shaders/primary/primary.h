@@ -46,11 +46,13 @@ struct ShadingPoint // where a pixel's light is to be found: first vertex after 
     uint depth;      // specular events before it
     vec3 throughput; // of the chain, 1/probability of its choices included
     vec2 barycentrics;
-    float width; // metres, across the chain's last ray: of what textures show at once
-    float back;  // metres, back along that ray to where rays leave: off the surface by more than rounding
-    uint mirror; // in which it is seen: kNoMirror, the packed normal of the only one, kManyMirrors
+    float width;     // metres, across the chain's last ray: of what textures show at once
+    float back;      // metres, back along that ray to where rays leave: off the surface by more than rounding
+    uint mirror;     // in which it is seen: kNoMirror, the packed normal of the only one, kManyMirrors
+    vec3 base_color; // of the surface, textures applied, as the next: so that nobody samples them again
+    uint finish;     // roughness and metallic, see lib/finish.glsl
 };
-GPU_SIZE(ShadingPoint, 64);
+GPU_SIZE(ShadingPoint, 80);
 
 GPU_CONST uint kNoMirror = 0x80008000u, kManyMirrors = 0x80000000u; // not among packed normals
 

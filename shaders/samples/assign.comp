@@ -15,7 +15,7 @@ layout(push_constant, scalar) uniform Params { ClusterParams params; };
 
 layout(set = 1, binding = 0, scalar) readonly buffer Size { QueueSize size; };
 layout(set = 1, binding = 1, scalar) readonly buffer Points { SamplePoint points[]; };
-layout(set = 1, binding = 2, scalar) readonly buffer Clusters { Cluster clusters[]; };
+layout(set = 1, binding = 2) uniform usamplerBuffer Clusters;
 layout(set = 1, binding = 3) uniform usamplerBuffer TreeNodes;
 layout(set = 1, binding = 4, scalar) readonly buffer Order { uint order[]; };
 layout(set = 1, binding = 5, scalar) buffer Sums { ClusterSums sums[]; };
@@ -24,6 +24,12 @@ layout(set = 1, binding = 7, scalar) readonly buffer Seeds { uint seeds[]; };   
 #include "shaders/lib/tree.glsl"
 
 float alpha() { return params.alpha / view_scale.distance; } // of Eq. 2, per metre
+
+Cluster loadCluster(uint index)
+{
+    uvec4 a = texelFetch(Clusters, int(index));
+    return Cluster(uintBitsToFloat(a.xyz), a.w);
+}
 
 /// The cluster whose seed is next to the point in Z-order: near enough that the search around it is short.
 uint neighbourInOrder(uint point)
@@ -51,7 +57,7 @@ void main()
     vec3 x = points[p].position;
     vec3 n = unpackNormal(points[p].normal);
     uint owner = neighbourInOrder(p);
-    float best = geometricVariation(alpha(), x, n, clusters[owner].position, unpackNormal(clusters[owner].normal));
+    float best = geometricVariation(alpha(), x, n, loadCluster(owner).position, unpackNormal(loadCluster(owner).normal));
     float radius2 = square(best / alpha());
     uint i, end;
     beginRanges(size.count);
@@ -61,7 +67,8 @@ void main()
             for (;;)
             {
                 uint cluster = order[i];
-                float eps = geometricVariation(alpha(), x, n, clusters[cluster].position, unpackNormal(clusters[cluster].normal));
+                Cluster c = loadCluster(cluster);
+                float eps = geometricVariation(alpha(), x, n, c.position, unpackNormal(c.normal));
                 if (eps < best || (eps == best && cluster < owner))
                 {
                     best = eps;
@@ -75,8 +82,8 @@ void main()
             break;
     }
     owners[p] = uvec2(owner, floatBitsToUint(best));
-    vec3 d = x - clusters[owner].position;
-    float width = cubeWidth(clusters[owner].position);
+    vec3 center = loadCluster(owner).position, d = x - center;
+    float width = cubeWidth(center);
     uvec3 position = uvec3(clamp(d / width + 0.5, 0.0, 1.0) * params.fixed_scale);
     uvec3 normal = uvec3((0.5 * n + 0.5) * params.fixed_scale);
     for (uint axis = 0u; axis < 3u; ++axis)

@@ -447,6 +447,7 @@ TEST(FramePlan, GoesOnWhereTheLastFrameServes)
 {
     Settings settings;
     const FrameTraits traits{.has_specular = true,
+                             .has_delta_lobes = true,
                              .reflects_roughly = true,
                              .has_noisy_direct = true,
                              .gathers_at_pixels = true,
@@ -473,6 +474,11 @@ TEST(FramePlan, GoesOnWhereTheLastFrameServes)
     const FramePlan caustics = planFrame(settings, traits, frame);
     EXPECT_TRUE(caustics.caustics && !caustics.makes_map && !caustics.direct);
     EXPECT_EQ(caustics.lightTerms(), gpu::kLightCaustics);
+    EXPECT_GT(caustics.chain_depth, 0u);
+    FrameTraits rough = traits; // no mirror anywhere: nothing that a caustic or a chain could begin with
+    rough.has_delta_lobes = false;
+    EXPECT_FALSE(planFrame(settings, rough, frame).caustics);
+    EXPECT_EQ(planFrame(settings, rough, frame).chain_depth, 0u);
 }
 
 /// Varnish over a diffuse wall: the pixel's own point keeps what the mirror does not take, the second has the mirrored part.

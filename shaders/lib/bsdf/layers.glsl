@@ -54,7 +54,7 @@ Bsdf bsdfAt(SurfaceMaterial m, bool front, vec3 clearcoat_normal)
     b.f90 = m.specular;
     b.alpha = max(square(m.roughness), square(kSmoothRoughness));
     b.stretched = mix(b.alpha, 1.0, square(m.anisotropy));
-    b.smooth_specular = hasFeature(kFeatureSpecular) && m.roughness < kSmoothRoughness && b.stretched == b.alpha;
+    b.smooth_specular = hasFeature(kFeatureDeltaLobes) && m.roughness < kSmoothRoughness && b.stretched == b.alpha;
     b.transmission = hasFeature(kFeatureTransmission) ? m.transmission : 0.0;
     b.thin = (m.flags & kMaterialThin) != 0u;
     b.eta = front || b.thin ? m.ior : 1.0 / m.ior;
@@ -64,7 +64,7 @@ Bsdf bsdfAt(SurfaceMaterial m, bool front, vec3 clearcoat_normal)
     bool outside = front || b.thin || b.transmission == 0.0; // coats and cloth lie on the outside of solid bodies
     b.clearcoat = outside ? m.clearcoat : 0.0;
     b.clearcoat_alpha = max(square(m.clearcoat_roughness), square(kSmoothRoughness));
-    b.smooth_clearcoat = m.clearcoat_roughness < kSmoothRoughness;
+    b.smooth_clearcoat = hasFeature(kFeatureDeltaLobes) && m.clearcoat_roughness < kSmoothRoughness;
     b.clearcoat_normal = clearcoat_normal;
     b.sheen_color = outside ? m.sheen_color : vec3(0.0);
     b.sheen_roughness = m.sheen_roughness;
