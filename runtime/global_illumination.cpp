@@ -48,12 +48,23 @@ bool splitsMirrors(const Device& device, const SceneGpu& scene, uint64_t pixel_c
     return scene.hasSmoothLayers() && 2 * pixel_count <= std::min(range / sizeof(gpu::ShadingPoint), threads);
 }
 
+/// Caustic paths that there is room for: none start where nothing is smooth.
+uint32_t causticPaths(const SceneGpu& scene, const Settings& settings)
+{
+    return scene.hasFeature(gpu::kFeatureDeltaLobes) ? settings.caustic_photons : 1;
+}
+
 /// Photons that a map of `wanted` has room for: no more than this device's buffers hold of what is made of each.
 uint32_t photonCapacity(const Device& device, uint64_t wanted)
 {
     const uint64_t range =
         std::min<uint64_t>(device.limits().maxStorageBufferRange, device.limits().maxTexelBufferElements * kTexelBytes);
     return uint32_t(std::min(wanted, range / std::max(2 * sizeof(gpu::CutNode), sizeof(gpu::PhotonSums))));
+}
+
+uint32_t causticCapacity(const Device& device, const SceneGpu& scene, const Settings& settings)
+{
+    return photonCapacity(device, uint64_t(causticPaths(scene, settings)) * kCausticBounces);
 }
 } // namespace
 
@@ -105,17 +116,15 @@ GlobalIllumination::GlobalIllumination(const Device& device, const SceneGpu& sce
       map_scratch_(photon_scratch_.stage()), caustic_scratch_(photon_scratch_.stage()),
       signals_scratch_(scratch_.stage()), photons_(device, scene, PhotonKind::kGlobal, settings.photon_count,
                                                    photonCapacity(device, settings.photon_capacity), map_scratch_),
-      caustic_photons_(device, scene, PhotonKind::kCaustic, settings.caustic_photons,
-                       photonCapacity(device, uint64_t(settings.caustic_photons) * kCausticBounces), caustic_scratch_),
+      caustic_photons_(device, scene, PhotonKind::kCaustic, causticPaths(scene, settings),
+                       causticCapacity(device, scene, settings), caustic_scratch_),
       photon_tree_(device, "photon_tree", photonCapacity(device, settings.photon_capacity), map_scratch_),
-      caustic_tree_(device, "caustic_tree",
-                    photonCapacity(device, uint64_t(settings.caustic_photons) * kCausticBounces), caustic_scratch_),
-      legs_(device), cut_(device, scene, photonCapacity(device, settings.photon_capacity), scratch_.stage()),
+      caustic_tree_(device, "caustic_tree", causticCapacity(device, scene, settings), caustic_scratch_), legs_(device),
+      cut_(device, scene, photonCapacity(device, settings.photon_capacity), scratch_.stage()),
       samples_(device, width, height, settings.sample_count),
       gather_(device, scene, settings.sample_count, settings.gather_rays, mostGatherRays(settings), scratch_.stage()),
       interpolate_(device, settings.sample_count, point_count_), glossy_(device, scene, point_count_, scratch_.stage()),
-      caustics_(device, scene, photonCapacity(device, uint64_t(settings.caustic_photons) * kCausticBounces),
-                caustic_scratch_),
+      caustics_(device, scene, causticCapacity(device, scene, settings), caustic_scratch_),
       filter_(device, scene, settings, width, height, direct_.isNoisy() || has_specular_, signals_scratch_),
       compose_(device, width * height, signals_scratch_), views_(device, scene, width * height)
 {
