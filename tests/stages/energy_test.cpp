@@ -289,6 +289,6 @@ TEST_F(Energy, PresetHighKeepsIt)
 
 TEST_F(Energy, PresetDefaultKeepsItInEachTerm)
 {
-    expectTerms("default, a fifth of its photons", Mode::kGi, preset("default", 0.2), 1, 8, 0.02);
+    expectTerms("default, a fifth of its photons", Mode::kGi, preset("default", 0.2), 1, 12, 0.02);
 }
 } // namespace
