@@ -113,9 +113,9 @@ GlobalIllumination::GlobalIllumination(const Device& device, const SceneGpu& sce
       primary_(device, scene, width * height, point_count_ > width * height, scratch_.stage()),
       view_scale_(device, scene),
       direct_(device, scene, width, height, point_count_ / (width * height), scratch_.stage()),
-      map_scratch_(photon_scratch_.stage()), caustic_scratch_(photon_scratch_.stage()),
-      signals_scratch_(scratch_.stage()), photons_(device, scene, PhotonKind::kGlobal, settings.photon_count,
-                                                   photonCapacity(device, settings.photon_capacity), map_scratch_),
+      map_scratch_(scratch_.stage()), caustic_scratch_(caustic_pool_.stage()), signals_scratch_(scratch_.stage()),
+      photons_(device, scene, PhotonKind::kGlobal, settings.photon_count,
+               photonCapacity(device, settings.photon_capacity), map_scratch_),
       caustic_photons_(device, scene, PhotonKind::kCaustic, causticPaths(scene, settings),
                        causticCapacity(device, scene, settings), caustic_scratch_),
       photon_tree_(device, "photon_tree", photonCapacity(device, settings.photon_capacity), map_scratch_),
@@ -389,15 +389,15 @@ void GlobalIllumination::recordCaustics(const Context& c)
     const PhotonStage::Input in{.path_count = path_count,
                                 .first_path = c.frame.accumulated * path_count,
                                 .seed = c.frame.map_seed + gpu::kTermCaustics};
+    const CausticsStage::Input shown{.points = c.surface.points,
+                                     .radiance = light_.caustics,
+                                     .point_count = c.point_count,
+                                     .camera = c.frame.camera,
+                                     .photon_count = settings.caustic_density_photons,
+                                     .radius = shrunkRadius(settings.caustic_radius, c.frame.accumulated)};
     if (!isThere(c, caustic_map_, in))
-        caustic_tree_.record(c.rec, caustic_photons_.record(c.rec, c.rays, in));
-    caustics_.record(c.rec, caustic_tree_.output(),
-                     {.points = c.surface.points,
-                      .radiance = light_.caustics,
-                      .point_count = c.point_count,
-                      .camera = c.frame.camera,
-                      .photon_count = settings.caustic_density_photons,
-                      .radius = shrunkRadius(settings.caustic_radius, c.frame.accumulated)});
+        caustics_.spread(c.rec, caustic_tree_.record(c.rec, caustic_photons_.record(c.rec, c.rays, in)), shown);
+    caustics_.apply(c.rec, caustic_tree_.output(), shown);
 }
 
 void GlobalIllumination::recordView(const Context& c, const Buffer& picture) const

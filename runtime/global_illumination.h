@@ -88,7 +88,7 @@ private:
     uint32_t point_count_; // shading points: one a pixel, or two
     // Stages run one after the other, and share memory for what only they need; those of one Scratch hand some of it on.
     ScratchPool scratch_;
-    ScratchPool photon_scratch_; // of photons and their trees, which need not wait for what works on the picture
+    ScratchPool caustic_pool_; // caustics need not wait for what is recorded before them
     LightBuffers light_;
     PrimaryStage primary_;
     ViewScaleStage view_scale_;

@@ -3,16 +3,17 @@
 #include "runtime/camera.h"
 
 CausticsStage::CausticsStage(const Device& device, const SceneGpu& scene, uint32_t max_photons, const Scratch& scratch)
-    : spread_(device.kernel("caustics/spread")), apply_(device.kernel("caustics/apply", scene.constants())),
+    : spread_kernel_(device.kernel("caustics/spread")),
+      apply_kernel_(device.kernel("caustics/apply", scene.constants())),
       spheres_(device.array<gpu::vec4>("caustics.spheres", max_photons, scratch)),
-      supports_(device.array<float>("caustics.supports", max_photons, scratch))
+      supports_(device.array<float>("caustics.supports", max_photons))
 {
 }
 
-void CausticsStage::record(Recorder& rec, const PhotonTreeStage::Output& map, const Input& in) const
+void CausticsStage::spread(Recorder& rec, const PhotonTreeStage::Output& map, const Input& in) const
 {
     const float pixel = pixelSide(in.camera);
-    rec.runIndirect(spread_, map.size,
+    rec.runIndirect(spread_kernel_, map.size,
                     gpu::SpreadPhotonsParams{.photon_count = in.photon_count,
                                              .radius = in.radius,
                                              .pixel_angle = in.camera.orthographic ? 0 : pixel,
@@ -27,7 +28,11 @@ void CausticsStage::record(Recorder& rec, const PhotonTreeStage::Output& map, co
                      {"LeafParents", map.tree.leafParents()},
                      {"NodeParents", map.tree.nodeParents()}});
     map.tree.refit(rec, spheres_, map.size);
-    rec.run(apply_, in.point_count, gpu::CausticsParams{.point_count = in.point_count, .width = in.camera.width},
+}
+
+void CausticsStage::apply(Recorder& rec, const PhotonTreeStage::Output& map, const Input& in) const
+{
+    rec.run(apply_kernel_, in.point_count, gpu::CausticsParams{.point_count = in.point_count, .width = in.camera.width},
             {{"Size", map.size},
              {"TreeNodes", map.tree.nodes()},
              {"Photons", map.photons},

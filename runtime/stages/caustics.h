@@ -18,13 +18,15 @@ public:
         uint32_t photon_count;           // k: photons that spread their light over one point, about
         float radius;                    // over which a photon spreads it at most: of the distance from the viewer
     };
-    /// The map's tree holds the photons' discs from then on.
-    void record(Recorder& rec, const PhotonTreeStage::Output& map, const Input& in) const;
+    /// Spreads the light of a new map's photons over discs, which its tree holds from then on.
+    void spread(Recorder& rec, const PhotonTreeStage::Output& map, const Input& in) const;
+    /// Adds the light of the discs of the last spread().
+    void apply(Recorder& rec, const PhotonTreeStage::Output& map, const Input& in) const;
 
-    /// float[map.size.count], squared radii of the discs of the last record(), metres.
+    /// float[map.size.count], squared radii of the discs of the last spread(), metres.
     const Buffer& supports() const { return supports_; }
 
 private:
-    Kernel spread_, apply_;
+    Kernel spread_kernel_, apply_kernel_;
     Buffer spheres_, supports_;
 };

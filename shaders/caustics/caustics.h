@@ -9,7 +9,7 @@ GPU_NAMESPACE_BEGIN
 
 struct SpreadPhotonsParams
 {
-    uint photon_count; // k: a photon's light is spread over the disc of as many photons
+    uint photon_count; // that a photon's light is spread over the disc of, about
     float radius;      // of a disc at most: of the distance from the viewer
     float pixel_angle; // radians from a pixel to the next; of an orthographic camera 0
     float pixel_side;  // metres, of an orthographic camera; else 0

@@ -5,8 +5,9 @@
 #include "shaders/lib/math.glsl"
 #include "shaders/lib/view_scale.glsl"
 
-// How far each caustic photon spreads its light: over the disc that its k nearest photons lie in, so that about as many discs
-// lie over any point, however dense the photons are there. One thread per photon.
+// How far each caustic photon spreads its light: over a disc of about as many photons as are wanted, so that about as many discs lie over
+// any point, however dense the photons are there. All light arrives, whatever the discs are (Silverman 1986, section 5.3, the adaptive
+// kernel method, asks for no exact density), so the tree tells the density, without a search. One thread per photon.
 
 layout(local_size_x = kRaysGroupSize) in;
 layout(push_constant, scalar) uniform Params { SpreadPhotonsParams params; };
@@ -19,25 +20,35 @@ layout(set = 1, binding = 4, scalar) writeonly buffer Spheres { vec4 spheres[]; 
 layout(set = 1, binding = 5, scalar) writeonly buffer Supports { float supports[]; }; // squared radii, metres
 layout(set = 1, binding = 6, scalar) readonly buffer LeafParents { uint leaf_parents[]; };
 layout(set = 1, binding = 7, scalar) readonly buffer NodeParents { uint node_parents[]; };
-#include "shaders/lib/density.glsl"
+#include "shaders/lib/photon.glsl"
+#include "shaders/lib/tree.glsl"
 
-/// Squared radius of as many photons as are wanted, if they lie as evenly over a plane as those of the smallest node above the photon
-/// that holds as many: in a focus, where a search from `most2` on would visit most of the map, next to the right one.
-float likelyRadius2(uint photon, float most2)
+/// Squared radius of the disc of as many photons as are wanted, if they lie as evenly as those of a node. Its photons lie in a plane; of
+/// that, the node's share is that of a square in its box.
+float discOf(TreeNode node)
 {
-    if (size.count <= params.photon_count)
+    vec3 extent = max(node.left_max, node.right_max) - min(node.left_min, node.right_min);
+    return 0.5 * dot(extent, extent) * kInvPi * float(params.photon_count) / float(node.count);
+}
+
+/// By the densest of the nodes above a photon that hold a quarter of the photons wanted or more, up to the first that holds all: the cells
+/// of a tree end where they happen to, and one that holds all may reach from a focus far into the dark.
+float discAround(uint photon, float most2)
+{
+    if (size.count < 2u)
         return most2;
+    float disc = most2;
     uint node = leaf_parents[photon] & ~kTreeLeafBit;
     for (;;)
     {
-        if (node == 0u || loadTreeNode(node).count >= params.photon_count)
+        TreeNode n = loadTreeNode(node);
+        bool tells = 4u * n.count >= params.photon_count;
+        disc = tells ? min(disc, discOf(n)) : disc;
+        if (node == 0u || n.count >= params.photon_count)
             break;
         node = node_parents[node] & ~kTreeLeafBit;
     }
-    TreeNode n = loadTreeNode(node);
-    vec3 extent = max(n.left_max, n.right_max) - min(n.left_min, n.right_min);
-    float area = 0.5 * dot(extent, extent); // of a square with that diagonal
-    return clamp(area * kInvPi * float(params.photon_count) / float(n.count), 1e-6 * most2, most2);
+    return disc;
 }
 
 /// Discs much narrower than a pixel would show between pixels, and flicker: they reach to the next one at least.
@@ -50,8 +61,7 @@ void main()
         return;
     Photon photon = loadPhoton(i);
     float most2 = square(params.radius * viewDistance(photon.position));
-    float support2 = nearestRadius2(photon.position, unpackNormal(photon.normal), size.count, params.photon_count, most2, likelyRadius2(i, most2));
-    support2 = max(support2, min(square(leastRadius(photon.position)), most2));
+    float support2 = max(discAround(i, most2), min(square(leastRadius(photon.position)), most2));
     spheres[order[i]] = vec4(photon.position, sqrt(support2));
     supports[i] = support2;
 }
