@@ -395,6 +395,9 @@ void GlobalIllumination::recordCaustics(const Context& c)
                                      .camera = c.frame.camera,
                                      .photon_count = settings.caustic_density_photons,
                                      .radius = shrunkRadius(settings.caustic_radius, c.frame.accumulated)};
+    const std::pair discs{shown.photon_count, shown.radius};
+    if (std::exchange(discs_, discs) != discs)
+        caustic_map_.reset(); // its tree holds the discs
     if (!isThere(c, caustic_map_, in))
         caustics_.spread(c.rec, caustic_tree_.record(c.rec, caustic_photons_.record(c.rec, c.rays, in)), shown);
     caustics_.apply(c.rec, caustic_tree_.output(), shown);

@@ -17,6 +17,7 @@
 #include "runtime/stages/views.h"
 
 #include <optional>
+#include <utility>
 
 class GlobalIllumination
 {
@@ -105,6 +106,7 @@ private:
     InterpolateStage interpolate_;
     GlossyStage glossy_;
     CausticsStage caustics_;
+    std::pair<uint32_t, float> discs_; // what the discs of the caustic map were made by: photons, radius
     LightFilter filter_;
     ComposeStage compose_;
     std::optional<LayersStage> layers_; // where they are asked for

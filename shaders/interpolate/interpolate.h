@@ -27,7 +27,7 @@ GPU_SIZE(InterpolateParams, 16);
 
 // Groups of so many pixels, tiles as far as the picture's width allows, search for samples together. Where a group's samples are more
 // than as many, as where far things show behind near ones, its pixels search each for itself.
-GPU_CONST uint kNearbySamples = 64u;
+GPU_CONST uint kNearbySamples = 48u;
 GPU_CONST uint kNearbyThreads = 8u; // that look at a group's points
 
 struct NearbyParams
