@@ -259,6 +259,7 @@ PhotonTreeStage::Output GlobalIllumination::recordMap(const Context& c)
     if (isThere(c, global_map_, photonInput(c)))
         return photon_tree_.output();
     made_cut_.reset();
+    caustic_map_.reset(); // its tree is sorted as seen from the camera, too
     map_camera_ = c.frame.camera.position;
     const PhotonStage::Output stored = [&]
     {
