@@ -276,9 +276,10 @@ void WindowedPlayer::showFrame(Statistics& statistics)
         renderer_->record(rec, fly_.camera(), settings_, options_.seed, renderer_->maxBatch());
         const Buffer& pixels = renderer_->display(rec, settings_, swapchain_.bgra());
         const auto shown = rec.scope("show");
-        swapchain_.beginOverlay(rec.commands(), pixels);
-        overlay_.draw(rec.commands());
-        swapchain_.endOverlay(rec.commands());
+        const VkCommandBuffer commands = rec.commands();
+        swapchain_.beginOverlay(commands, pixels);
+        overlay_.draw(commands);
+        swapchain_.endOverlay(commands);
     }
     if (statistics.first_submit_ms == 0)
     {

@@ -104,7 +104,7 @@ public:
 
     /// Barriers since begin(), that of begin() included; steps that are still to be recorded have none yet.
     uint32_t barrierCount() const { return barrier_count_; }
-    /// The command buffer, for the swapchain and the user interface: what was recorded before lies in it.
+    /// The command buffer, for the swapchain and the user interface: what was recorded before lies in it, and a barrier. Not in a render pass.
     VkCommandBuffer commands();
     /// Ends recording and submits with semaphores (either may be null); wait() then waits and returns the times.
     void submit(VkSemaphore wait_for, VkSemaphore signal);
