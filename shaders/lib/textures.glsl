@@ -128,13 +128,12 @@ vec4 sampleTexture(uint ref_index, vec2 uv0, vec2 uv1, Footprints footprints)
         return sampleLevel(ref, st, 0.0);
     Lookups lookups = lookupsFor(ref, second ? footprints.uv1 : footprints.uv0);
     vec4 sum = vec4(0.0);
-    for (float k = 0.5;;) // tests at its end: see lib/bvh.glsl why
+    int left = int(lookups.count); // an integer: Mesa 22.3 takes a loop up to a clamped float once too often
+    do // tests at its end: see lib/bvh.glsl why
     {
-        sum += sampleLevel(ref, st + (k / lookups.count - 0.5) * lookups.along, lookups.level);
-        k += 1.0;
-        if (k >= lookups.count)
-            break;
-    }
+        --left;
+        sum += sampleLevel(ref, st + ((float(left) + 0.5) / lookups.count - 0.5) * lookups.along, lookups.level);
+    } while (left > 0);
     return sum / lookups.count;
 }
 vec4 sampleTexture(uint ref_index, vec2 uv0, vec2 uv1) { return sampleTexture(ref_index, uv0, uv1, kPoint); }
