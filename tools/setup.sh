@@ -6,7 +6,7 @@ set -euo pipefail
 
 packages=(
     # build
-    cmake g++ ninja-build pkg-config
+    ccache cmake g++ ninja-build pkg-config
     # shaders, at build time
     glslang-tools spirv-cross spirv-tools
     # package format
