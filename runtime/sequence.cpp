@@ -90,10 +90,11 @@ Status Sequence::renderPart(std::span<const uint32_t> frames)
 {
     if (const Status status = begin(); !status)
         return status;
-    const int64_t part = frames.front() / options_.part * options_.part;
-    const int64_t warm_up = options_.mode == Mode::kGi ? warm_up_ : 0; // other modes remember nothing
-    for (int64_t frame = part - warm_up; frame <= frames.back(); ++frame)
+    int64_t next = int64_t(frames.front() / options_.part * options_.part) - warm_up_;
+    while (!frames.empty())
     {
+        // Other modes remember nothing: every frame has a seed of its own, with which a renderer begins anew.
+        const int64_t frame = options_.mode == Mode::kGi ? next++ : frames.front();
         const double start = statistics_.elapsedMs();
         if (const Status status = renderSamples(frame, 1); !status)
             return status;
@@ -105,8 +106,7 @@ Status Sequence::renderPart(std::span<const uint32_t> frames)
         if (const Status status = write(frames.front()); !status)
             return status;
         statistics_.frames_ms += statistics_.elapsedMs() - start;
-        if (frames = frames.subspan(1); frames.empty())
-            break;
+        frames = frames.subspan(1);
     }
     return Success{};
 }

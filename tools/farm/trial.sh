@@ -17,14 +17,15 @@
 #     --set NAME=VALUE    a setting; may be repeated
 #     --sbatch OPTION     for sbatch; may be repeated
 #     --seed N        of the choice of what is killed; default 1
+#     --no-compare    renders nothing a second time, to measure alone
 #     --keep FOLDER   works there and keeps everything
 # LUMICUT_BIN=FOLDER uses the programs there. Exit code 0: all is equal; 1: it is not; 77: Slurm is not installed.
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 . "$farm/slurm_here.sh"
 
-frames=240 scenes=12 chunk= part=64 kills=10 pause=15 limit= nodes=2 bad_node= size=64x48 mode=gi seed=1 keep= look=() farming=()
-read_options frames= scenes= chunk= part= kills= pause= limit= nodes= bad-node size= mode= spp++=look set++=look seed= keep= \
+frames=240 scenes=12 chunk= part=64 kills=10 pause=15 limit= nodes=2 bad_node= no_compare= size=64x48 mode=gi seed=1 keep= look=() farming=()
+read_options frames= scenes= chunk= part= kills= pause= limit= nodes= bad-node no-compare size= mode= spp++=look set++=look seed= keep= \
     sbatch++=farming -- "$@"
 : "${chunk:=$part}"
 find_program lumicut-play
@@ -106,6 +107,8 @@ killer=
 echo "cluster  $nodes nodes of one core${bad_node:+, the last without a driver}; $scenes scenes, $frames frames in chunks of $chunk: $seconds s, with $(wc -l <"$work/kills") kills"
 "$farm/status.sh" "$work/farm" || { tail -n 20 "$work"/farm/.farm/logs/*.log >&2 && exit 1; }
 echo "tries    $(cat "$work"/farm/.farm/logs/[0-9]*.log | grep -c ': begins') of $(((frames - 1) / chunk + 1)) tasks"
+
+[[ -z $no_compare ]] || exit 0
 
 # ---- The same by one process ---------------------------------------------------------------------------------------
 
