@@ -59,7 +59,7 @@ protected:
         std::filesystem::create_directory(folder_ / folder);
         return fmt::format(
             "--headless {} --path {} --output {} --size 48x32 --fps 12 --mode direct --set direct_samples=64 {}",
-            quoted(package_), quoted("path.json"), quoted(folder + "/f%03d.exr"), arguments);
+            quoted("cornell.lumi"), quoted("path.json"), quoted(folder + "/f%03d.exr"), arguments);
     }
     ProgramRun play(const std::string& folder, const std::string& arguments) const
     {
@@ -80,6 +80,4 @@ protected:
                                                  quoted(folder + "/" + frame), signal))
             .exit_code;
     }
-
-    std::string package_ = "cornell.lumi";
 };

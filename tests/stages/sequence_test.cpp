@@ -231,10 +231,6 @@ TEST_F(RememberingSequence, MotionIsToWhereTheLastCameraSawTheSame)
 
 TEST_F(SequenceProgram, GoesOnWhereItWasInterrupted)
 {
-    // A lamp that turns: the first pose of a player is another one where it goes on.
-    ASSERT_EQ(runProgram(LUMICUT_SCENES, quoted("") + " lamp").exit_code, 0);
-    ASSERT_EQ(runProgram(LUMICUT_COMPILE, "-q " + quoted("lamp.glb")).exit_code, 0);
-    package_ = "lamp.lumi";
     expectPlayed("whole", "--frames 0-11");
     ASSERT_EQ(files("whole").size(), 12u);
 
