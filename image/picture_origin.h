@@ -5,7 +5,7 @@
 struct PictureOrigin
 {
     std::string package;  // the hash in its header, and by way of it of all of it
-    std::string version;  // of the player, with a hash of its kernels
+    std::string version;  // of the player, with a hash of its kernels and sources
     std::string settings; // a line each, "name value": options and settings that decide what a picture shows
     std::string samples;  // of --samples, "A-B", several with commas; empty: all of the picture
     std::string device;   // with its driver; not compared: a farm may have several kinds

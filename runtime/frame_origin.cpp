@@ -3,6 +3,7 @@
 #include "format/mapped_file.h"
 #include "format/package_layout.h"
 #include "runtime/gpu/kernel.h"
+#include "runtime/source_hash.h"
 
 #include <cstring>
 
@@ -57,6 +58,7 @@ std::string playerVersion()
         Hash hash;
         for (const KernelCode& kernel : kernelCodes())
             hash.add(std::as_bytes(kernel.words));
+        hash.add(std::as_bytes(std::span(kSourceHash))); // plans, tables and poses come from the CPU
         return fmt::format("{} {}", LUMICUT_VERSION, hash.text());
     }();
     return version;
@@ -87,6 +89,8 @@ Result<std::string> settingsText(const PlayerOptions& options, const Settings& s
     add("time", options.seconds ? fmt::format("{}", *options.seconds) : "");
     add("path", *path);
     add("fps", options.sequence ? fmt::format("{}", options.fps) : "");
+    const bool remembers = options.sequence && options.mode == Mode::kGi && options.sample_count == 0;
+    add("part", remembers ? fmt::format("{}", options.part) : "");
     add("against", *against);
     for (const Setting& setting : allSettings())
         std::visit([&](auto member) { add(setting.name, settings.*member); }, setting.member);

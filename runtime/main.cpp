@@ -184,6 +184,10 @@ int main(int argc, char** argv)
         app.add_option("--fps", options.fps, "frames a second of the path and the animation, of a sequence")
             ->check(CLI::Range(0.001, 1e6))
             ->capture_default_str(),
+        app.add_option("--part", options.part,
+                       "frames of a sequence of mode gi that go on from each other; --frames best begin at multiples")
+            ->check(CLI::Range(1u, 10000000u))
+            ->capture_default_str(),
         app.add_flag("--force", options.force, "render frames or --samples again that are there"),
         app.add_flag("--list-missing", options.list_missing,
                      "print the frames of a sequence that are not there, render nothing")};

@@ -20,6 +20,7 @@ struct PlayerOptions
     std::filesystem::path path;          // of the camera, .json; empty: it stands still, or flies by hand
     std::optional<NumberRange> sequence; // headless: these frames along `path`, each into a file
     double fps = 30;                     // frames a second of the path's time
+    uint32_t part = 64;                  // frames of a sequence of mode gi that go on from each other
     bool force = false;                  // renders frames again that are there
     bool list_missing = false;           // prints the numbers of frames that are not there, and renders nothing
     std::filesystem::path output;        // .exr or .png, of a sequence with a place for the number; empty: none

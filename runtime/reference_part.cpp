@@ -114,6 +114,7 @@ Status playReferencePart(const PlayerOptions& options)
     if (const Status status = Renderer::checkSize(*opened->device, options.width, options.height); !status)
         return status;
     const ExactSumStage stage(*opened->device, options.width * options.height);
+    const double start = statistics.elapsedMs();
     if (!traceSamples(*opened, options, stage, statistics))
         return Error{ExitCode(128 + interruption()),
                      fmt::format("ended by a signal ({}), and nothing is written", ::strsignal(interruption()))};
@@ -129,6 +130,8 @@ Status playReferencePart(const PlayerOptions& options)
     sum.origin = std::move(*origin);
     if (const Status status = writeSampleSum(options.output, sum); !status)
         return status.error().about(options.output.string());
+    statistics.frames_written = 1;
+    statistics.frames_ms = statistics.elapsedMs() - start;
     if (options.stats.empty())
         return Success{};
     const Status status = statistics.writeJson(options.stats);

@@ -21,8 +21,8 @@ class Sequence
 public:
     /// @param frame_count that render() will be given
     Sequence(const PlayerOptions& options, const OpenedScene& opened, const PictureOrigin& origin,
-             const FrameFiles& files, size_t frame_count, const SequenceParts& parts, Statistics& statistics)
-        : options_(options), opened_(opened), files_(files), frame_count_(frame_count), parts_(parts),
+             const FrameFiles& files, size_t frame_count, int64_t warm_up, Statistics& statistics)
+        : options_(options), opened_(opened), files_(files), frame_count_(frame_count), warm_up_(warm_up),
           statistics_(statistics), rec_(*opened.device), notes_(originNotes(origin))
     {
     }
@@ -43,7 +43,7 @@ private:
     const OpenedScene& opened_;
     const FrameFiles& files_;
     size_t frame_count_, written_ = 0; // that are to be written, and are
-    SequenceParts parts_;
+    int64_t warm_up_;                  // frames of mode gi before each part
     Statistics& statistics_;
     Recorder rec_;
     std::vector<PictureNote> notes_; // for every frame's header
@@ -90,10 +90,11 @@ Status Sequence::renderPart(std::span<const uint32_t> frames)
 {
     if (const Status status = begin(); !status)
         return status;
-    const int64_t part = frames.front() / parts_.frames * parts_.frames;
-    const int64_t warm_up = options_.mode == Mode::kGi ? parts_.warm_up : 0; // other modes remember nothing
-    for (int64_t frame = part - warm_up; frame <= frames.back(); ++frame)
+    int64_t next = int64_t(frames.front() / options_.part * options_.part) - warm_up_;
+    while (!frames.empty())
     {
+        // Other modes remember nothing: every frame has a seed of its own, with which a renderer begins anew.
+        const int64_t frame = options_.mode == Mode::kGi ? next++ : frames.front();
         const double start = statistics_.elapsedMs();
         if (const Status status = renderSamples(frame, 1); !status)
             return status;
@@ -105,8 +106,7 @@ Status Sequence::renderPart(std::span<const uint32_t> frames)
         if (const Status status = write(frames.front()); !status)
             return status;
         statistics_.frames_ms += statistics_.elapsedMs() - start;
-        if (frames = frames.subspan(1); frames.empty())
-            break;
+        frames = frames.subspan(1);
     }
     return Success{};
 }
@@ -129,7 +129,7 @@ Status Sequence::render(std::span<const uint32_t> frames)
     while (!frames.empty())
     {
         const bool standing = options_.sample_count > 0;
-        const auto same_part = [&](uint32_t frame) { return frame / parts_.frames == frames.front() / parts_.frames; };
+        const auto same_part = [&](uint32_t frame) { return frame / options_.part == frames.front() / options_.part; };
         const size_t count = standing ? 1 : size_t(std::ranges::find_if_not(frames, same_part) - frames.begin());
         const Status status = standing ? renderStanding(frames.front()) : renderPart(frames.first(count));
         if (!status)
@@ -215,12 +215,12 @@ Status leaveAlone(const PlayerOptions& options, const Statistics& statistics)
 } // namespace
 
 Status renderFrames(const PlayerOptions& options, const OpenedScene& opened, const FrameFiles& files,
-                    std::span<const uint32_t> frames, Statistics& statistics, const SequenceParts& parts)
+                    std::span<const uint32_t> frames, Statistics& statistics, int64_t warm_up)
 {
     const auto origin = originOf(opened, options);
     if (!origin)
         return origin.error();
-    Sequence sequence(options, opened, *origin, files, frames.size(), parts, statistics);
+    Sequence sequence(options, opened, *origin, files, frames.size(), warm_up, statistics);
     const Status rendered = sequence.render(frames);
     const Status written = sequence.writeResults();
     return rendered ? written : rendered;

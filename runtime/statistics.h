@@ -22,7 +22,7 @@ struct Statistics
     uint32_t photon_paths = 0;                  // of the last frame's map, whole in it
     uint32_t photon_paths_asked = 0;            // more than those where the store was full
     uint32_t photons = 0;                       // that they left
-    uint32_t frames_written = 0;                // of a sequence
+    uint32_t frames_written = 0;                // of a sequence, or a part of --samples
     double frames_ms = 0;                       // for these, from the first sample to the file
     double thrown_away_ms = 0;                  // for frames of a sequence that are not kept
     std::vector<std::vector<StageTime>> frames; // of the first kMeasuredFrames submissions

@@ -49,6 +49,7 @@ gpu::Light& LightChanges::of(uint32_t index)
 EmitterShapes::EmitterShapes(const package::Package& package) : package_(package)
 {
     const uint32_t first_vertex = package.firstMovingVertex();
+    const package::Pose rest = package::poseAtRest(package);
     for (const package::MovingRange& range : package.movingRanges())
     {
         Object object;
@@ -62,6 +63,8 @@ EmitterShapes::EmitterShapes(const package::Package& package) : package_(package
         if (object.triangles.empty())
             continue;
         object.bone = onlyBone(package, range.first_vertex - first_vertex, range.vertex_count);
+        if (object.bone)
+            object.rest = stretchOf(rest.bones[*object.bone]);
         objects_.push_back(std::move(object));
     }
 }
@@ -88,16 +91,21 @@ void EmitterShapes::change(const package::Pose& pose, LightChanges& changes)
 {
     for (Object& object : objects_)
     {
-        if (object.bone)
-        {
-            const Stretch now = stretchOf(pose.bones[*object.bone]);
-            if (object.stretch && isAlike(*object.stretch, now))
-                continue;
-            object.stretch = now;
-        }
+        const bool as_in_package = object.bone && isAlike(object.rest, stretchOf(pose.bones[*object.bone]));
+        if (as_in_package && object.as_in_package)
+            continue;
+        object.as_in_package = as_in_package;
         for (const Triangle& triangle : object.triangles)
         {
             gpu::Light& light = changes.of(triangle.light);
+            if (as_in_package)
+            {
+                const gpu::Light& at_rest = package_.lights()[triangle.light];
+                light.p0 = at_rest.p0;
+                light.p1 = at_rest.p1;
+                light.p2 = at_rest.p2;
+                continue;
+            }
             light.p0 = package::posedPosition(package_, pose, triangle.vertices.x);
             light.p1 = package::posedPosition(package_, pose, triangle.vertices.y);
             light.p2 = package::posedPosition(package_, pose, triangle.vertices.z);

@@ -29,8 +29,8 @@ public:
     /// @param package with motion; borrowed
     explicit EmitterShapes(const package::Package& package);
 
-    /// Corners of moving triangles that emit, where their area can have changed since the call before. What a single bone moves
-    /// keeps its areas while the bone turns and travels.
+    /// Corners of moving triangles that emit, where their area can be another than in the call before. What a single bone moves has
+    /// the areas of the package while the bone turns and travels. After each call areas depend on its pose alone, to the bit.
     void change(const package::Pose& pose, LightChanges& changes);
 
 private:
@@ -46,8 +46,9 @@ private:
     struct Object
     {
         std::vector<Triangle> triangles;
-        std::optional<uint32_t> bone;     // that alone moves it
-        std::optional<Stretch> stretch{}; // of that bone, at the last call
+        std::optional<uint32_t> bone; // that alone moves it
+        Stretch rest{};               // of that bone in the package
+        bool as_in_package = true;    // its areas, since the last call
     };
     static Stretch stretchOf(const gpu::BoneMatrix& m);
     static bool isAlike(const Stretch& a, const Stretch& b);

@@ -22,6 +22,7 @@ protected:
                     .height = 16,
                     .path = folder_ / "path.json",
                     .fps = 12,
+                    .part = 4,
                     .preset = "preview",
                     .assignments = {"photons.count=500", "samples.count=64"}};
         auto opened = openScene(options_, {}, statistics_);
@@ -37,8 +38,7 @@ protected:
         ASSERT_TRUE(names) << names.error().message;
         std::vector<uint32_t> frames(last - first + 1);
         std::iota(frames.begin(), frames.end(), first);
-        const Status status =
-            renderFrames(options_, *opened_, *names, frames, statistics_, {.frames = 4, .warm_up = warm_up});
+        const Status status = renderFrames(options_, *opened_, *names, frames, statistics_, warm_up);
         EXPECT_TRUE(status) << status.error().message;
     }
 
@@ -57,6 +57,23 @@ TEST_F(RememberingSequence, HasTheSameBytesInPieces)
     expectWhole("pieces");
     render("cold", 4, 4, 0);
     EXPECT_NE(frame("cold", "f04.exr"), frame("whole", "f04.exr")); // or there would be nothing to remember
+
+    // Parts of another length have other frames, and are not mixed with these.
+    options_.part = 8;
+    options_.sequence = {0, 8};
+    render("long", 0, 8);
+    for (const uint32_t first : {6u, 0u, 3u})
+        render("long pieces", first, first + 2);
+    for (const std::string& name : files("long"))
+        EXPECT_EQ(frame("long pieces", name), frame("long", name)) << name;
+    options_.output = folder_ / "long/f%02d.exr";
+    options_.part = 4;
+    const Status mixed = playSequence(options_);
+    ASSERT_FALSE(mixed);
+    EXPECT_EQ(mixed.error().code, ExitCode::kInvalid);
+    EXPECT_TRUE(contains(mixed.error().message, "(part 8, not 4)")) << mixed.error().message;
+    options_.sequence.reset();
+    options_.output.clear();
 
     // Frames of many samples are standing pictures, each by itself. (Frame 0 of seed 0 has seed 0.)
     options_.sample_count = 2;

@@ -47,18 +47,20 @@ seconds_since() {
 
 # keep_job: writes what tasks need. Wants `state`, the folder .farm, and the variables below.
 keep_job() {
-    mkdir -p "$state"/{running,logs,stats} || fail 2 "the folder $state cannot be made"
+    mkdir -p "$state"/{running,logs,stats,times,tries} || fail 2 "the folder $state cannot be made"
     local text
-    text=$(declare -p kind command first last chunk pattern list_file gpu cores tries film film_options bin job_name) || exit
+    text=$(declare -p kind command first last chunk pattern list_file gpu cores tries film film_options extra bin job_name) || exit
     echo "$text" >"$state/job.$$" && mv "$state/job.$$" "$state/job" || fail 2 "$state/job cannot be written"
 }
 
-# load_job FOLDER: the other way round.
+# load_job FOLDER: the other way round, and `step` from one item with a file of its own to the next.
 load_job() {
     state=$1/.farm
     [[ -r $state/job ]] || fail 2 "there is no job in $1 (no readable $state/job); was it submitted, and is the share there?"
     # declare makes variables of functions local.
     . <(sed 's/^declare /declare -g /' "$state/job")
+    step=1
+    [[ $kind != samples ]] || step=$chunk
 }
 
 # range_of TASK: sets from and to, the first and the last item of a task; the last task is shorter.
@@ -67,6 +69,16 @@ range_of() {
     to=$((from + chunk - 1))
     ((to <= last)) || to=$last
     ((from <= last)) || fail 1 "there is no task $1"
+}
+
+# file_of ITEM: sets `file` to that of a frame, of a part or of a scene's package. Wants `folder`, and of scenes the array `scenes`.
+file_of() {
+    if [[ $kind == scenes ]]; then
+        file=${scenes[$1]##*/}
+        file=$folder/${file%.*}.lumi
+    else
+        printf -v file "%s/$pattern" "$folder" "$1"
+    fi
 }
 
 task_count() {
@@ -87,6 +99,21 @@ running_tasks() {
         [[ -e $marker ]] || continue
         age=$(seconds_since "$marker") || continue
         ((age <= stale)) && echo "$(basename "$marker") $(<"$marker")"
+    done
+}
+
+# lasting_options: sets `lasting` to those of the user's options for sbatch that hold for jobs sent later, too. By then what they
+# depend on has ended, and may be unknown.
+lasting_options() {
+    lasting=()
+    local option skip=0
+    for option in "${extra[@]}"; do
+        case $option in
+        --dependency | -d) skip=1 ;;
+        --dependency=* | -d* | --kill-on-invalid-dep=*) skip=0 ;;
+        *) ((skip)) || lasting+=("$option")
+            skip=0 ;;
+        esac
     done
 }
 

@@ -16,8 +16,9 @@ folder=${state%/.farm}
 wait_for_others() {
     [[ -n ${SLURM_JOB_ID-} ]] || return 1
     squeue --noheader --name "$job_name" --format %i | grep -qvx "$SLURM_JOB_ID" || return 1
+    lasting_options
     sbatch --parsable --job-name "$job_name" --dependency singleton --ntasks 1 --requeue --open-mode append \
-        --output "$state/logs/film.log" --partition "$SLURM_JOB_PARTITION" \
+        --output "$state/logs/film.log" --partition "$SLURM_JOB_PARTITION" "${lasting[@]}" \
         --wrap "exec $(printf '%q ' "$farm/film.sh" "$folder" "$film")" >/dev/null
 }
 incomplete() {

@@ -3,13 +3,14 @@
 #   tools/farm/render.sh PACKAGE --frames A-B --output DIR/frame-%05d.exr [OPTION...] [OPTION OF lumicut-play...]
 #   tools/farm/render.sh PACKAGE --samples A-B --output DIR/part-%06d.exr --mode reference [...]
 #   tools/farm/render.sh --status DIR        what is done, running and missing, from the folder alone
-#     --chunk N          frames or samples a task; default 64. Multiples of 64 do no work twice
+#     --chunk N          frames or samples a task; default that of --part, or 64. Multiples of that do no work twice
+#     --part N           of lumicut-play: frames of mode gi that go on from each other; longer ones throw away less
 #     --cores N          CPU cores a task; default 1
 #     --gpu              a GPU for each task (--gres gpu:1 of Slurm)
 #     --film FILE.mp4    joins the frames with ffmpeg once all are there; of samples --film FILE.exr: adds them up
 #     --dependency JOB   begins after this job of Slurm, such as that of compile.sh, has succeeded
 #     --sbatch OPTION    for sbatch, such as --sbatch=--partition=gpu; may be repeated
-#     --tries N          how often a task is begun at most; default 10
+#     --tries N          how often in succession a task may fail without having brought anything; default 10
 #     --local            without Slurm: GNU parallel on this machine
 #     --workers N        of --local: tasks at a time; default one for each --cores cores
 #     --dry-run          prints what would be submitted
@@ -18,7 +19,7 @@
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
-chunk=64 cores=1 gpu=0 tries=10 here=0 dry_run=0 workers= dependency= status= frames= samples= output= film=
+chunk= cores=1 gpu=0 tries=10 here=0 dry_run=0 workers= dependency= status= frames= samples= output= film=
 extra=() player=() operands=()
 while (($#)); do
     value=${2-}
@@ -35,7 +36,7 @@ while (($#)); do
         (($# >= 2)) || fail 1 "$1 needs a value (see --help)"
         declare "${1#--}=$value" && shift ;;
     --sbatch) extra+=("$value") && shift ;;
-    --path | --fps | --mode | --preset | --camera | --animation | --time | --seed | --device | --set | --size | --spp | --layers | --view | --against)
+    --path | --fps | --part | --mode | --preset | --camera | --animation | --time | --seed | --device | --set | --size | --spp | --layers | --view | --against)
         (($# >= 2)) || fail 1 "$1 needs a value (see --help)"
         player+=("$1" "$value") && shift ;;
     --force) fail 1 "--force would render every frame again with each try; empty the folder instead" ;;
@@ -44,7 +45,7 @@ while (($#)); do
     esac
     shift
 done
-for number in chunk cores tries ${workers:+workers}; do
+for number in ${chunk:+chunk} cores tries ${workers:+workers}; do
     [[ ${!number} =~ ^[1-9][0-9]{0,6}$ ]] || fail 1 "--$number ${!number}: a number from 1 on is expected"
 done
 if [[ -n $status ]]; then
@@ -65,25 +66,30 @@ pattern=$(basename "$output")
 [[ $package == /* ]] || package=$PWD/$package
 [[ -z $film ]] || film=$(absolute "$film")
 find_program lumicut-play
+part=64 mode=gi spp= film_options=(30)
 for ((i = 0; i < ${#player[@]}; i += 2)); do # of other machines' current folders
     case ${player[i]} in
     --path | --against) player[i + 1]=$(absolute "${player[i + 1]}") ;;
     --device) ((gpu == 0)) || fail 1 "--gpu and --device both say which device; give one" ;;
+    --fps) film_options=("${player[i + 1]}") ;;
+    --part) part=${player[i + 1]} ;;
+    --mode) mode=${player[i + 1]} ;;
+    --spp) spp=${player[i + 1]} ;;
     esac
 done
 
+[[ $part =~ ^[1-9][0-9]{0,6}$ ]] || fail 1 "--part $part: a number from 1 on is expected"
+: "${chunk:=$part}"
+
 kind=frames
-film_options=(30)
 command=(lumicut-play "$package" --headless "${player[@]}" --output "$output")
 if [[ -n $samples ]]; then
     kind=samples
     command=(lumicut-play "$package" --headless "${player[@]}")
 fi
-for ((i = 0; i < ${#player[@]}; i += 2)); do
-    [[ ${player[i]} != --fps ]] || film_options=("${player[i + 1]}")
-done
-if [[ $kind == frames && $((chunk % 64)) -ne 0 && $((last - first)) -ge $chunk && " ${player[*]} " != *" --spp "* ]]; then
-    echo "note: chunks of $chunk frames begin within parts of 64 frames, so that tasks render frames that they throw away" >&2
+# Frames of mode gi go on from earlier ones, but for --spp.
+if [[ $kind == frames && -z $spp && $mode == gi ]] && ((last - first >= chunk && (chunk % part != 0 || first % part != 0))); then
+    echo "note: chunks of $chunk frames from $first on begin within parts of $part frames, so that tasks render frames that they throw away" >&2
 fi
 list_file=
 state=$(dirname "$output")/.farm
@@ -101,8 +107,9 @@ if ((here)); then
     exit 0
 fi
 # Not only after the array: tasks that a machine could not do are sent elsewhere as jobs of the same name.
+lasting_options
 batch=(sbatch --parsable --job-name "$job_name" --dependency singleton --ntasks 1 --requeue --open-mode append
-    --output "$state/logs/film.log" "${extra[@]}" --wrap "exec $(printf '%q ' "$farm/film.sh" "$(dirname "$output")")")
+    --output "$state/logs/film.log" "${lasting[@]}" --wrap "exec $(printf '%q ' "$farm/film.sh" "$(dirname "$output")")")
 printf '%q ' "${batch[@]}"
 echo
 ((dry_run)) || "${batch[@]}"

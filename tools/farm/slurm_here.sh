@@ -16,7 +16,8 @@ start_slurm() {
     munged --force --key-file="$key" --socket="$cluster/munge.sock" --pid-file="$cluster/munge.pid" \
         --log-file="$cluster/munge.log" --seed-file="$cluster/munge.seed" 2>>"$cluster/start.log" || { cat "$cluster/start.log" >&2; return 2; }
     local port=$((20000 + $$ % 20000 / 64 * 64)) # several trials side by side
-    # A task that is put back begins when its old credential has expired: not after the two minutes that Slurm takes by default.
+    # A task that is put back begins when its old credential has expired, and the queue is looked through again: not after the two
+    # minutes and the one that Slurm takes by default. The next task begins when one has ended, as it does everywhere.
     cat >"$cluster/slurm.conf" <<END
 ClusterName=trial
 SlurmctldHost=$host(127.0.0.1)
@@ -36,6 +37,7 @@ ProctrackType=proctrack/pgid
 TaskPlugin=task/none
 SwitchType=switch/none
 SchedulerType=sched/builtin
+SchedulerParameters=sched_interval=5
 SelectType=select/cons_tres
 SelectTypeParameters=CR_Core
 JobAcctGatherType=jobacct_gather/none

@@ -4,23 +4,30 @@
 #   tools/farm/trial.sh [OPTION...]
 #     --frames N      of the sequence; default 240
 #     --scenes N      to compile, up to 12; default 12
-#     --chunk N       frames a task; default 64
+#     --chunk N       frames a task; default --part
+#     --part N        frames of mode gi that go on from each other; default 64
 #     --kills N       how many tasks are killed: the program by TERM or KILL, or the task put back by Slurm; default 10
 #     --pause S       seconds between them; default 15
+#     --limit MIN     minutes after which Slurm ends a task, which it puts back a minute before; default: no limit
 #     --nodes N       default 2
 #     --bad-node      the last node has no Vulkan driver
 #     --size WxH      of the frames; default 64x48
 #     --mode MODE     of lumicut-play; default gi
+#     --spp N         each frame is a picture of its own of N samples
 #     --set NAME=VALUE    a setting; may be repeated
+#     --sbatch OPTION     for sbatch; may be repeated
 #     --seed N        of the choice of what is killed; default 1
+#     --no-compare    renders nothing a second time, to measure alone
 #     --keep FOLDER   works there and keeps everything
 # LUMICUT_BIN=FOLDER uses the programs there. Exit code 0: all is equal; 1: it is not; 77: Slurm is not installed.
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 . "$farm/slurm_here.sh"
 
-frames=240 scenes=12 chunk=64 kills=10 pause=15 nodes=2 bad_node= size=64x48 mode=gi seed=1 keep= settings=()
-read_options frames= scenes= chunk= kills= pause= nodes= bad-node size= mode= set++=settings seed= keep= -- "$@"
+frames=240 scenes=12 chunk= part=64 kills=10 pause=15 limit= nodes=2 bad_node= no_compare= size=64x48 mode=gi seed=1 keep= look=() farming=()
+read_options frames= scenes= chunk= part= kills= pause= limit= nodes= bad-node no-compare size= mode= spp++=look set++=look seed= keep= \
+    sbatch++=farming -- "$@"
+: "${chunk:=$part}"
 find_program lumicut-play
 find_program lumicut-compile
 find_program lumicut-scenes
@@ -54,12 +61,13 @@ names=(lamp cornell caustics door walker ball shield sheets small slot bright80 
 names=("${names[@]:0:scenes}")
 "$lumicut_scenes" "$work/scenes" "${names[@]}" >/dev/null
 printf "$work/scenes/%s.glb\n" "${names[@]}" >"$work/list"
-look=(--size "$size" --mode "$mode" --fps 24 --preset preview "${settings[@]}")
+look+=(--size "$size" --mode "$mode" --fps 24 --part "$part" --preset preview)
+[[ -z $limit ]] || farming+=(--sbatch "--time=$limit")
 
 start=$(date +%s.%N)
 compile_job=$("$farm/compile.sh" "$work/list" "$work/farm/packages" --chunk 2 -- --quiet | tail -n 1)
 render_job=$("$farm/render.sh" "$work/farm/packages/lamp.lumi" --frames "0-$((frames - 1))" --chunk "$chunk" \
-    --output "$work/farm/f%05d.exr" --film "$work/film.mp4" --dependency "$compile_job" "${look[@]}" | sed -n 2p)
+    --output "$work/farm/f%05d.exr" --film "$work/film.mp4" --dependency "$compile_job" "${farming[@]}" "${look[@]}" | sed -n 2p)
 
 # Processes of this trial only: their command lines name its folder.
 random() { RANDOM_STATE=$(((RANDOM_STATE * 1103515245 + 12345) % 2147483648)) && drawn=$((RANDOM_STATE / 65536 % $1)); }
@@ -98,11 +106,13 @@ killer=
 
 echo "cluster  $nodes nodes of one core${bad_node:+, the last without a driver}; $scenes scenes, $frames frames in chunks of $chunk: $seconds s, with $(wc -l <"$work/kills") kills"
 "$farm/status.sh" "$work/farm" || { tail -n 20 "$work"/farm/.farm/logs/*.log >&2 && exit 1; }
-echo "tries    $(cat "$work"/farm/.farm/logs/*.log | grep -c ': begins') of $(((frames - 1) / chunk + 1)) tasks"
+echo "tries    $(cat "$work"/farm/.farm/logs/[0-9]*.log | grep -c ': begins') of $(((frames - 1) / chunk + 1)) tasks"
+
+[[ -z $no_compare ]] || exit 0
 
 # ---- The same by one process ---------------------------------------------------------------------------------------
 
-export LP_NUM_THREADS=1
+unset LP_NUM_THREADS
 "$lumicut_compile" --quiet --output "$work/one/" $(<"$work/list") >/dev/null
 "$lumicut_play" "$work/one/lamp.lumi" --headless --frames "0-$((frames - 1))" --output "$work/one/f%05d.exr" "${look[@]}" 2>"$work/one.log"
 result=0

@@ -1,4 +1,5 @@
 # Writes OUTPUT, a header with the hash of all sources in FOLDERS: cmake -DOUTPUT=... -DFOLDERS=a,b -P source_hash.cmake
+# Of names and contents alone, so that equal sources have equal hashes in a checkout and from an archive, wherever they lie.
 string(REPLACE "," ";" FOLDERS "${FOLDERS}")
 set(hashes "")
 foreach(folder IN LISTS FOLDERS)
@@ -12,4 +13,4 @@ foreach(folder IN LISTS FOLDERS)
 endforeach()
 string(SHA256 hash "${hashes}")
 string(SUBSTRING ${hash} 0 32 hash)
-file(WRITE ${OUTPUT} "#pragma once\n#include <string_view>\n\ninline constexpr std::string_view kSourceHash = \"${hash}\";\n")
+file(WRITE ${OUTPUT} "#pragma once\n#include <string_view>\n\nconstexpr std::string_view kSourceHash = \"${hash}\";\n")
