@@ -20,6 +20,7 @@ void repairGltf(json& document, Warnings& warnings)
     const json* nodes = references.list("nodes");
     NodeParents parents(nodes == nullptr ? 0 : nodes->size());
     references.each("nodes", [&](const JsonPlace& place, size_t i) { repairNode(references, place, i, parents); });
+    breakCycles(references, parents);
     references.each("scenes", [&](const JsonPlace& place, size_t) { repairScene(references, place, parents); });
     references.resolve({document, ""}, "scene", "scenes", "scene", "the first scene counts");
 }

@@ -14,7 +14,8 @@ void repairMaterial(References& references, const JsonPlace& material);
 /// gltf_repair_mesh.cpp: a primitive that cannot be drawn has no attributes afterwards.
 void repairMesh(References& references, const JsonPlace& mesh);
 
-/// gltf_repair_node.cpp. Every node has one parent at most, and no root has any.
+/// gltf_repair_node.cpp. Every node has one parent at most and is not its own ancestor, and no root has any parent.
 using NodeParents = std::vector<std::optional<size_t>>; // of each node
 void repairNode(References& references, const JsonPlace& node, size_t number, NodeParents& parents);
+void breakCycles(References& references, NodeParents& parents); // once all nodes are repaired
 void repairScene(References& references, const JsonPlace& scene, const NodeParents& parents);

@@ -1,5 +1,7 @@
 #include "compiler/gltf_repair_items.h"
 
+#include <algorithm>
+
 using nlohmann::json;
 
 namespace
@@ -53,6 +55,25 @@ void repairNode(References& references, const JsonPlace& node, size_t number, No
                                        fmt::format("node {} has a parent already", child), "it stays with that one");
                        return false;
                    });
+}
+
+void breakCycles(References& references, NodeParents& parents)
+{
+    std::vector<size_t> walk(parents.size()); // the node from which each was reached first, 1 + its number
+    for (size_t from = 0; from < parents.size(); ++from)
+    {
+        size_t at = from;
+        for (; walk[at] == 0 && parents[at]; at = *parents[at])
+            walk[at] = from + 1;
+        if (!parents[at] || walk[at] != from + 1)
+            continue;
+        const size_t parent = *parents[at];
+        json& children = (*references.list("nodes"))[parent]["children"];
+        references.warn(WarningKind::kMalformed, fmt::format("/nodes/{}/children", parent),
+                        fmt::format("node {} is its own ancestor", at), "it has no parent");
+        children.erase(std::find(children.begin(), children.end(), json(at)));
+        parents[at].reset();
+    }
 }
 
 void repairScene(References& references, const JsonPlace& scene, const NodeParents& parents)

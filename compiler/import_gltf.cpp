@@ -114,7 +114,11 @@ Status checkVertexTotal(const tinygltf::Model& model, const std::vector<Job>& jo
         if (positions == job.source->attributes.end() || positions->second < 0 ||
             size_t(positions->second) >= model.accessors.size())
             continue;
-        total += std::min<uint64_t>(model.accessors[size_t(positions->second)].count, kMostVertices + 1);
+        const tinygltf::Accessor& accessor = model.accessors[size_t(positions->second)];
+        // Where it claims more than its bytes can hold it is damaged, and only its primitive is left out.
+        const bool has_view = accessor.bufferView >= 0 && size_t(accessor.bufferView) < model.bufferViews.size();
+        const uint64_t most = has_view ? model.bufferViews[size_t(accessor.bufferView)].byteLength : kMostVertices + 1;
+        total += std::min<uint64_t>(accessor.count, most);
         if (total > kMostVertices)
             return Error{ExitCode::kUnsupported,
                          fmt::format("its meshes, in all their poses, have more than {} vertices", kMostVertices)};

@@ -109,6 +109,7 @@ const std::vector<BadItem> kBadItems{
     {"NodeQuaternion", "/nodes/1/rotation", {0, 0, 0, 0}, kRange, "/nodes/1/rotation", "the node is not turned"},
     {"NodeTwoParents", "/nodes/2", json::object({{"children", {1, 1}}}), kMalformed, "/nodes/2/children/1",
      "it stays with that one", 1, 1, 1},
+    {"NodeOwnChild", "/nodes/1/children", {1}, kMalformed, "/nodes/1/children", "it has no parent"},
     {"SceneIndex", "/scene", 3, kDangling, "/scene", "the first scene counts"},
     {"SceneRootTwice", "/scenes/0/nodes", {0, 1, 1}, kMalformed, "/scenes/0/nodes/2", "it is placed once"},
     {"PrimitiveMaterial", "/meshes/1/primitives/0/material", 77, kDangling, "/meshes/1/primitives/0/material",
@@ -252,6 +253,34 @@ TEST(RepairScene, AMissingBufferTakesOnlyWhatLiesInIt)
     EXPECT_EQ(made->warnings[0].pointer, "/buffers/1");
     EXPECT_EQ(made->warnings[0].code, ExitCode::kIo);
     EXPECT_EQ(made->warnings[1].pointer, "/meshes/1/primitives/0/attributes/NORMAL");
+}
+
+TEST(RepairScene, ACycleOfNodesIsCutAndAllOfThemAreDrawn)
+{
+    Scene scene;
+    scene.at("/nodes/1/children") = {2};
+    scene.at("/nodes/2") = {{"mesh", 0}, {"children", {1}}};
+    const Result<SceneData> made = scene.scene();
+    ASSERT_TRUE(made) << made.error().message;
+    EXPECT_EQ(made->mesh.triangles.size(), 3u);
+    ASSERT_EQ(made->warnings.size(), 1u);
+    EXPECT_EQ(made->warnings[0].pointer, "/nodes/2/children");
+    EXPECT_EQ(made->warnings[0].message, "node 1 is its own ancestor");
+}
+
+TEST(RepairScene, AnAccessorOfTooManyElementsTakesOnlyItsPrimitive)
+{
+    Scene scene;
+    const int positions = scene.at("/meshes/1/primitives/0/attributes/POSITION");
+    for (const uint64_t count : {uint64_t(4), uint64_t(1'000'000'000), uint64_t(1) << 63})
+    {
+        scene.json["accessors"][size_t(positions)]["count"] = count;
+        const Result<SceneData> made = scene.scene();
+        ASSERT_TRUE(made) << made.error().message;
+        EXPECT_EQ(made->mesh.triangles.size(), 1u);
+        ASSERT_EQ(damageAmong(made->warnings).size(), 1u);
+        EXPECT_NE(made->warnings[0].message.find("reaches past the end"), std::string::npos);
+    }
 }
 
 TEST(RepairScene, WhereNothingIsLeftTheErrorSaysWhy)
