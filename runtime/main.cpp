@@ -45,6 +45,18 @@ Status parseSize(const std::string& text, PlayerOptions& options)
     return Success{};
 }
 
+/// Refuses NaN, which CLI::Range() takes.
+CLI::Validator between(double least, double most)
+{
+    const auto problem = [least, most](std::string& text)
+    {
+        double value = 0;
+        const bool good = CLI::detail::lexical_cast(text, value) && value >= least && value <= most;
+        return good ? std::string() : fmt::format("{} is no number from {} to {}", text, least, most);
+    };
+    return {problem, fmt::format("FLOAT in [{} - {}]", least, most)};
+}
+
 /// A number from `begin` to `end` of the text, all of it.
 std::optional<uint32_t> numberIn(const std::string& text, size_t begin, size_t end)
 {
@@ -182,7 +194,7 @@ int main(int argc, char** argv)
                    "camera path (.json) to follow; in a window until a key or the mouse moves the camera");
     const CLI::Option* sequence_options[] = {
         app.add_option("--fps", options.fps, "frames a second of the path and the animation, of a sequence")
-            ->check(CLI::Range(0.001, 1e6))
+            ->check(between(0.001, 1e6))
             ->capture_default_str(),
         app.add_option("--part", options.part,
                        "frames of a sequence of mode gi that go on from each other; --frames best begin at multiples")
@@ -198,7 +210,7 @@ int main(int argc, char** argv)
     app.add_option("--animation", options.animation,
                    "what plays: a name, an index, all or none; default the first, of a single picture none");
     app.add_option("--time", options.seconds, "seconds of the animation that a picture shows or a sequence begins at")
-        ->check(CLI::Range(0.0, 1e6));
+        ->check(between(0, 1e6));
     app.add_option("--seed", options.seed, "seed of all random numbers")->capture_default_str();
     app.add_option("--device", options.device, "index, part of a name, or cpu; default the best suitable one");
     app.add_flag("--list-devices", list_devices, "list Vulkan devices and what each one lacks");

@@ -292,7 +292,10 @@ TEST_F(SequenceProgram, RefusesBadRequestsInASentence)
     refused(sequence + "--frames 0-3 --camera 0", 1, "give one");
     refused("--headless --fps 12", 1, "--fps is for sequences");
     refused("--headless --list-missing", 1, "--list-missing is for sequences");
-    refused(sequence + "--frames 0-3 --fps 0", 1, "--fps");
+    for (const char* fps : {"0", "nan", "x"})
+        refused(sequence + "--frames 0-3 --fps " + fps, 1, "--fps");
+    for (const char* time : {"-1", "nan", "inf"})
+        refused(sequence + "--frames 0-3 --time " + time, 1, "--time");
     refused(sequence + "--frames 0-3 --layers depht", 1, "--layers");
     refused("--headless --layers depth --output " + quoted("refused/f.png"), 1, "FILE.exr");
     refused("--headless --layers depth --mode reference --output " + quoted("refused/f.exr"), 1, "mode gi");
