@@ -1,5 +1,8 @@
 #include "runtime/stages/view_scale.h"
 
+#include "shaders/view_scale/measure.h"
+
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -15,11 +18,15 @@ ViewScaleStage::ViewScaleStage(const Device& device, const SceneGpu& scene)
 
 void ViewScaleStage::record(Recorder& rec, const Buffer& points, uint32_t point_count, const gpu::CameraParams& camera)
 {
-    // An orthographic camera may be at any distance: the scale is the size of its picture.
-    const gpu::vec3 r = camera.right, u = camera.up;
-    const float side = std::sqrt(r.x * r.x + r.y * r.y + r.z * r.z) + std::sqrt(u.x * u.x + u.y * u.y + u.z * u.z);
-    const gpu::MeasureParams params{
-        .focus = camera.position, .point_count = point_count, .fixed_distance = camera.orthographic != 0 ? side : 0};
+    // Half the width and height of a picture at distance 1: from there on a camera's angle is usual.
+    constexpr float kUsual = 2.0f / 3;
+    const float side =
+        std::hypot(camera.right.x, camera.right.y, camera.right.z) + std::hypot(camera.up.x, camera.up.y, camera.up.z);
+    const gpu::MeasureViewParams params{.eye = camera.position,
+                                        .forward = camera.forward,
+                                        .point_count = point_count,
+                                        .orthographic = camera.orthographic,
+                                        .size = camera.orthographic != 0 ? side : std::min(side / kUsual, 1.0f)};
     rec.run(measure_, 1, params, {{"Points", points}, {"Scale", scene_.viewScale()}});
     const Buffer& readback = readbacks_[turn_];
     turn_ = (turn_ + 1) % kFramesInFlight;

@@ -3,18 +3,19 @@
 #extension GL_EXT_scalar_block_layout : require
 #include "shaders/lib/math.glsl"
 #include "shaders/primary/primary.h"
+#include "shaders/view_scale/measure.h"
 #include "shaders/view_scale/view_scale.h"
 
-// The geometric mean of the shading points' distances from the camera: a few far hills in a window do not move it. One group,
-// so that the order of the sum is fixed.
+// The geometric mean of the shading points' distances from the camera: a few far hills in a window do not move it. Of parallel rays
+// the mean depth, which is of any sign. One group, so that the order of the sum is fixed.
 
 layout(local_size_x = kMeasureGroupSize) in;
-layout(push_constant, scalar) uniform Params { MeasureParams params; };
+layout(push_constant, scalar) uniform Params { MeasureViewParams params; };
 
 layout(set = 1, binding = 0, scalar) readonly buffer Points { ShadingPoint points[]; };
 layout(set = 1, binding = 1, scalar) buffer Scale { ViewScale scale; }; // keeps its distance where there is nothing in view
 
-shared vec2 sums[kMeasureGroupSize]; // of logarithms, and points
+shared vec2 sums[kMeasureGroupSize]; // of logarithms or depths, and points
 
 void main()
 {
@@ -26,9 +27,11 @@ void main()
         uint point = uint(float(i) * (float(params.point_count) / float(wanted)));
         if (point >= params.point_count || points[point].slot == kNone)
             continue;
-        float distance = length(points[point].position - params.focus);
-        if (distance > 0.0)
-            sum += vec2(log(distance), 1.0);
+        vec3 to_point = points[point].position - params.eye;
+        if (params.orthographic != 0u)
+            sum += vec2(dot(to_point, params.forward), 1.0);
+        else if (length(to_point) > 0.0)
+            sum += vec2(log(length(to_point)), 1.0);
     }
     sums[t] = sum;
     for (uint half_ = kMeasureGroupSize / 2u; half_ > 0u; half_ /= 2u)
@@ -39,9 +42,17 @@ void main()
     }
     if (t != 0u)
         return;
-    scale.focus = params.focus;
-    if (params.fixed_distance > 0.0)
-        scale.distance = params.fixed_distance;
-    else if (sums[0].y > 0.0)
-        scale.distance = exp(sums[0].x / sums[0].y);
+    bool seen = sums[0].y > 0.0;
+    float mean = seen ? sums[0].x / sums[0].y : 0.0, away = 0.0; // from the eye to the focus
+    if (params.orthographic != 0u)
+    {
+        scale.distance = params.size;
+        away = seen ? mean - params.size : 0.0;
+    }
+    else if (seen)
+    {
+        scale.distance = exp(mean) * params.size;
+        away = exp(mean) - scale.distance;
+    }
+    scale.focus = params.eye + away * params.forward;
 }

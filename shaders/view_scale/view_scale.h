@@ -9,18 +9,10 @@ GPU_NAMESPACE_BEGIN
 // not depend on the plain that it stands on.
 struct ViewScale
 {
-    vec3 focus;     // metres, world: the camera's position
-    float distance; // metres: geometric mean over the picture of how far its shading points are from there
+    vec3 focus;     // metres, world: the camera's position, or where a camera of usual angle would see as much
+    float distance; // metres: geometric mean of the shading points' distances from the camera, less that of the focus
 };
 GPU_SIZE(ViewScale, 16);
-
-struct MeasureParams
-{
-    vec3 focus;
-    uint point_count;
-    float fixed_distance; // metres; above 0: this in place of the mean
-};
-GPU_SIZE(MeasureParams, 20);
 
 GPU_CONST uint kMeasureGroupSize = 256u;
 GPU_CONST uint kMeasuredPoints = 64u; // by a thread at most: 16384 in all know the mean to 1 %

@@ -38,7 +38,6 @@ protected:
         submit(*scene, [&](Recorder& rec)
                { stage.record(rec, shown.gpu->points, kWidth * kHeight, cameraParams(camera, kWidth, kHeight)); });
         const gpu::ViewScale scale = contents<gpu::ViewScale>(scene->viewScale(), 1)[0];
-        EXPECT_EQ(length2(Double3(scale.focus) - Double3(camera.position)), 0);
         if (points)
             *points = shown.points;
         return scale;
@@ -55,6 +54,7 @@ TEST_F(ViewScales, AreTheGeometricMeanDistanceOfWhatIsSeen)
             logarithms += std::log(length(p.position - Double3(camera().position))), ++count;
     ASSERT_GT(count, 100);
     ASSERT_LT(count, kWidth * kHeight); // some see nothing
+    EXPECT_EQ(length2(Double3(scale.focus) - Double3(camera().position)), 0);
     EXPECT_NEAR(scale.distance, std::exp(logarithms / count),
                 1e-5 * scale.distance); // rounding of a thousand logarithms
 }
@@ -92,8 +92,49 @@ TEST_F(ViewScales, AreReadBackFromTheFrameThatHasEndedWhileTheLastOneMayBeInFlig
     EXPECT_NE(distances[0], distances[1]);
 }
 
-TEST_F(ViewScales, OfParallelRaysAreThePicturesSize)
+/// `by` metres back along its view.
+Camera movedBack(Camera camera, float by)
 {
-    EXPECT_NEAR(measured(camera(3), 0).distance, 1.5 * (1 + double(kWidth) / kHeight), 1e-5);
+    camera.position = camera.position + -by * camera.forward;
+    return camera;
+}
+
+TEST_F(ViewScales, OfParallelRaysAreThePicturesSizeFromWhereverTheyStart)
+{
+    const Camera near = camera(3);
+    std::vector<ShadingPoints::Point> points;
+    const gpu::ViewScale scale = measured(near, 0, &points);
+    const double size = 1.5 * (1 + double(kWidth) / kHeight);
+    EXPECT_NEAR(scale.distance, size, 1e-5);
+    const gpu::ViewScale far = measured(movedBack(near, 64), 0);
+    EXPECT_EQ(far.distance, scale.distance);
+    // Rays from there meet the scene beside the others by rounding: one of a thousand may pass an edge and meet something else.
+    EXPECT_LT(length(Double3(far.focus) - Double3(scale.focus)), 1e-3 * size);
+    double depths = 0, count = 0;
+    for (const ShadingPoints::Point& p : points)
+        if (p.exists)
+            depths += dot(p.position - Double3(near.position), Double3(near.forward)), ++count;
+    ASSERT_GT(count, 100);
+    EXPECT_NEAR(dot(Double3(scale.focus) - Double3(near.position), Double3(near.forward)), depths / count - size,
+                1e-5 * size);
+}
+
+TEST_F(ViewScales, OfANarrowAngleAreThoseOfAUsualOneThatShowsAsMuch)
+{
+    Camera narrow = movedBack(camera(), 50);
+    narrow.vertical_fov = 0.04f;
+    std::vector<ShadingPoints::Point> points;
+    const gpu::ViewScale scale = measured(narrow, 0, &points);
+    double logarithms = 0, count = 0;
+    for (const ShadingPoints::Point& p : points)
+        if (p.exists)
+            logarithms += std::log(length(p.position - Double3(narrow.position))), ++count;
+    ASSERT_GT(count, 100);
+    const double mean = std::exp(logarithms / count);
+    // Of a usual camera, half the picture's width and height are two thirds of its distance.
+    const double distance = mean * std::tan(0.02) * (1 + double(kWidth) / kHeight) * 1.5;
+    EXPECT_NEAR(scale.distance, distance, 1e-5 * mean);
+    const Double3 focus = Double3(narrow.position) + (mean - distance) * Double3(narrow.forward);
+    EXPECT_LT(length(Double3(scale.focus) - focus), 1e-5 * mean);
 }
 } // namespace
