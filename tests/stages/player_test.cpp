@@ -45,7 +45,8 @@ bool contains(const std::string& text, const std::string& part)
     return text.find(part) != std::string::npos;
 }
 
-/// A folder with the scene above, compiled.
+/// A folder with the scene above, compiled. Where any picture will do it is of mode direct: a software device takes most of a run for
+/// the kernels of mode gi.
 class Player : public testing::Test
 {
 protected:
@@ -190,7 +191,7 @@ TEST_F(Player, RefusesArgumentsThatMakeNoSense)
 TEST_F(Player, RefusesOutputsThatCannotBeWritten)
 {
     std::filesystem::create_directory(folder_ / "folder.exr");
-    const std::string scene = path("scene.lumi") + " ";
+    const std::string scene = path("scene.lumi") + " --mode direct ";
     expectPlayRefused(scene + "--output " + path("none/out.exr"), 2, "none");
     expectPlayRefused(scene + "--output " + path("folder.exr"), 2, "folder");
     expectPlayRefused(scene + "--output /proc/out.exr", 2,
@@ -232,11 +233,11 @@ TEST_F(Player, HelpNamesTheExitCodesAndVersionTheVersion)
 
 TEST_F(Player, RendersBothModesWithoutAValidationMessage)
 {
+    const std::string png = render("direct.png", "--spp 2 --mode direct");
+    EXPECT_TRUE(png.starts_with(std::string("\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\0\x20\0\0\0\x18", 24)));
     for (const std::string mode : {"gi", "direct", "reference"})
     {
         const std::set<std::string> before = files();
-        const std::string png = render(mode + ".png", "--spp 2 --mode " + mode);
-        EXPECT_TRUE(png.starts_with(std::string("\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\0\x20\0\0\0\x18", 24)));
         // A message of the layers would stop it.
         render(mode + ".exr", "--validate --spp 2 --mode " + mode + " --stats " + path(mode + ".json"));
         const Result<ImageF> image = readExr(folder_ / (mode + ".exr"));
@@ -247,7 +248,7 @@ TEST_F(Player, RendersBothModesWithoutAValidationMessage)
         EXPECT_GT(std::reduce(image->rgb.begin(), image->rgb.end()), 0.0f);
         EXPECT_TRUE(contains(fileBytes(folder_ / (mode + ".json")), "\"samples_per_pixel\": 2"));
         std::set<std::string> expected = before;
-        expected.insert({mode + ".exr", mode + ".json", mode + ".png"});
+        expected.insert({mode + ".exr", mode + ".json"});
         EXPECT_EQ(files(), expected);
     }
 }
@@ -278,14 +279,14 @@ TEST_F(Player, OptionsMayStandBeforeTheFile)
 {
     const ProgramRun compiled = compile("-q --view a=0,1,4,0,1,0,40 --view b=0,3,4,0,0,0,40 " + path("scene.gltf"));
     EXPECT_EQ(compiled.exit_code, 0) << compiled.err;
-    const ProgramRun run = play("--camera b --set exposure=1 --set tonemap=srgb " + path("scene.lumi"));
+    const ProgramRun run = play("--mode direct --camera b --set exposure=1 --set tonemap=srgb " + path("scene.lumi"));
     EXPECT_EQ(run.exit_code, 0) << run.err;
 }
 
 TEST_F(Player, RendersOnWhenItsPipelineCacheIsDamaged)
 {
     ::setenv("XDG_CACHE_HOME", (folder_ / "cache").c_str(), 1);
-    const std::string picture = render("a.exr", "--spp 1");
+    const std::string picture = render("a.exr", "--mode direct --spp 1");
     size_t damaged = 0;
     for (const auto& entry : std::filesystem::directory_iterator(folder_ / "cache/lumicut"))
     {
@@ -296,7 +297,7 @@ TEST_F(Player, RendersOnWhenItsPipelineCacheIsDamaged)
         ++damaged;
     }
     EXPECT_EQ(damaged, 1u);
-    EXPECT_EQ(render("b.exr", "--spp 1"), picture);
+    EXPECT_EQ(render("b.exr", "--mode direct --spp 1"), picture);
 }
 
 TEST_F(Player, ReplacesAnOlderPictureOnlyWhenTheNewOneIsWhole)
@@ -304,7 +305,7 @@ TEST_F(Player, ReplacesAnOlderPictureOnlyWhenTheNewOneIsWhole)
     writeFile(folder_ / "out.exr", "older");
     expectPlayRefused(path("scene.lumi") + " --camera nowhere --output " + path("out.exr"), 1, "nowhere");
     EXPECT_EQ(fileBytes(folder_ / "out.exr"), "older");
-    EXPECT_NE(render("out.exr", "--spp 1"), "older");
+    EXPECT_NE(render("out.exr", "--mode direct --spp 1"), "older");
 }
 
 TEST_F(Player, FailedCompilationsLeaveNothingBehind)
