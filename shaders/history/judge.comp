@@ -110,16 +110,15 @@ void findPlaces(uint block, int part, ivec2 in_tile, float footprint)
 Followed compareTerm(uint block, uint term, ivec2 in_tile, vec2 memory)
 {
     Pairs far = kNoPairs, wide = kNoPairs, near = kNoPairs;
-    uint places = same_places[block], tiles_ = same_tiles[block];
-    [[unroll]] for (int k = 0; k < kPlaces; ++k)
+    for (int k = 0; k < kPlaces; ++k)
     {
-        if (!isTwice(k))
-            addPair(wide, (places >> k & 1u) != 0u ? shown[term][areaIndex(in_tile + placeAt(k))] : uvec2(0u));
+        if ((same_places[block] >> k & 1u) != 0u)
+            addPair(wide, shown[term][areaIndex(in_tile + placeAt(k))]);
         if (k == kNearPlaces - 1)
             near = wide;
     }
     for (int k = 0; k < kTilesAround; ++k)
-        if ((tiles_ >> k & 1u) != 0u)
+        if ((same_tiles[block] >> k & 1u) != 0u)
         {
             far.fresh += tile_pairs[term][k].fresh;
             far.past += tile_pairs[term][k].past;
