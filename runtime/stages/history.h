@@ -23,11 +23,9 @@ public:
 
 private:
     uint32_t tile_count_;
-    Kernel compare_, judge_, reconcile_, blend_;
+    Kernel compare_, reconcile_, blend_;
     Buffer compared_;              // gpu::PixelPairs[pixels]
     Buffer tiles_;                 // gpu::TilePairs[tile_count_]
-    Buffer blocks_;                // gpu::HistoryBlock[tile_count_ * kTileBlocks]
-    Buffer followed_;              // gpu::FollowedTerm[tile_count_ * kTileBlocks * kHistoryTerms]
     std::array<Buffer, 2> pixels_; // gpu::PixelHistory[pixels]
     uint32_t now_ = 0;
 };
