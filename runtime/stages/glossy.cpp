@@ -5,6 +5,7 @@
 GlossyStage::GlossyStage(const Device& device, const SceneGpu& scene, uint32_t max_pixels, const Scratch& scratch)
     : generate_(device.kernel("glossy/generate", scene.constants())),
       shade_(device.kernel("glossy/shade", scene.constants())),
+      follow_(device.kernel("glossy/follow", scene.constants())),
       harmonics_(device.kernel("glossy/harmonics", scene.constants())),
       queue_(device, "glossy.queue", max_pixels, scratch),
       next_queue_(device, "glossy.next_queue", max_pixels, scratch),
@@ -22,7 +23,6 @@ void GlossyStage::record(Recorder& rec, const RayStage& rays, const CutStage::Ou
                              .width = in.width,
                              .first_sample = in.first_sample,
                              .seed = in.seed,
-                             .depth = 0,
                              .depth_limit = in.specular_depth,
                              .shared_ = in.shared,
                              .roulette_threshold = in.roulette_threshold};
@@ -34,27 +34,33 @@ void GlossyStage::record(Recorder& rec, const RayStage& rays, const CutStage::Ou
              {"States", states_},
              {"Shares", shares_}});
     rays.close(rec, queue_.size);
-    const RayQueue* queue = &queue_;
-    const RayQueue* next = &next_queue_;
-    for (; params.depth <= params.depth_limit; ++params.depth)
-    {
-        rays.closest(rec, *queue, hits_, traceSeed(in.seed, in.first_sample, ~params.depth));
-        rays.reset(rec, next->size);
-        rec.runIndirect(shade_, queue->size, params,
-                        {{"Queue", queue->size},
-                         {"Rays", queue->rays},
-                         {"Hits", hits_},
-                         {"States", states_},
-                         {"NextQueue", next->size},
-                         {"NextRays", next->rays},
-                         {"Radiance", in.radiance},
-                         {"CutSize", cut.size},
-                         {"TreeNodes", cut.tree.nodes()},
-                         {"CutNodes", cut.nodes},
-                         {"Directions", cut.directions}});
-        rays.close(rec, next->size);
-        std::swap(queue, next);
-    }
+    rays.closest(rec, queue_, hits_, traceSeed(in.seed, in.first_sample, ~0u));
+    rays.reset(rec, next_queue_.size);
+    rec.runIndirect(shade_, queue_.size, params,
+                    {{"Queue", queue_.size},
+                     {"Rays", queue_.rays},
+                     {"Hits", hits_},
+                     {"States", states_},
+                     {"NextQueue", next_queue_.size},
+                     {"NextRays", next_queue_.rays},
+                     {"Radiance", in.radiance},
+                     {"CutSize", cut.size},
+                     {"TreeNodes", cut.tree.nodes()},
+                     {"CutNodes", cut.nodes},
+                     {"Directions", cut.directions}});
+    if (params.depth_limit == 0)
+        return;
+    rays.close(rec, next_queue_.size);
+    rays.count(rec, next_queue_.size);
+    rec.runIndirect(follow_, next_queue_.size, params,
+                    {{"Queue", next_queue_.size},
+                     {"Rays", next_queue_.rays},
+                     {"States", states_},
+                     {"Radiance", in.radiance},
+                     {"CutSize", cut.size},
+                     {"TreeNodes", cut.tree.nodes()},
+                     {"CutNodes", cut.nodes},
+                     {"Directions", cut.directions}});
 }
 
 void GlossyStage::recordHarmonics(Recorder& rec, const InterpolateStage::Sorted& samples, const Buffer& harmonics,

@@ -10,15 +10,9 @@ void main()
     if (hit.slot != kNone) // a ray that gathers for nothing has none
         state = states[ray.path];
     float weight = state.throughput.x;
-    uint sample_ = ray.path / params.ray_count;
-    Sampler sampler_ = Sampler(hash(params.seed, sample_), ray.path - sample_ * params.ray_count, 1u + params.depth);
-    GatherVertex vertex = shadeGatherVertex(ray, hit, state, sampler_, false);
-    bool goes_on = vertex.goes_on && params.depth < params.depth_limit;
-    if (params.depth == 0u)
-        gathered[ray.path] = Gathered(vertex.radiance, hit.slot == kNone ? 0.0 : weight / max(hit.t, 1e-6));
-    else
-        gathered[ray.path].radiance += vertex.radiance;
-    if (!goes_on)
+    GatherVertex vertex = shadeGatherVertex(ray, hit, state, gatherSampler(params, ray.path, 0u), false);
+    gathered[ray.path] = Gathered(vertex.radiance, hit.slot == kNone ? 0.0 : weight / max(hit.t, 1e-6));
+    if (!vertex.goes_on || params.depth_limit == 0u)
         return;
     states[ray.path] = state;
     next_rays[atomicAdd(next_queue.count, 1u)] = vertex.next;

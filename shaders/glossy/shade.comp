@@ -34,11 +34,11 @@ void main()
     Ray ray = loadRay(i);
     Hit hit = loadHit(i);
     GatherState state = states[ray.path];
-    Sampler sampler_ = Sampler(hash(params.seed, ray.path), params.first_sample, params.depth);
+    Sampler sampler_ = Sampler(hash(params.seed, ray.path), params.first_sample, 0u);
     GatherVertex vertex = shadeGatherVertex(ray, hit, state, sampler_, true);
     if (vertex.radiance != vec3(0.0))
         radiance[ray.path] += vertex.radiance;
-    if (!vertex.goes_on || params.depth >= params.depth_limit)
+    if (!vertex.goes_on || params.depth_limit == 0u)
         return;
     states[ray.path] = state;
     next_rays[atomicAdd(next_queue.count, 1u)] = vertex.next;

@@ -1,0 +1,30 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "shaders/gather/gather.h"
+
+// Follows gathering rays that a mirror or glass sent on, to their end: few, and a queue a vertex would cost more than the threads
+// that wait. One thread per ray of the queue.
+
+layout(local_size_x = kRaysGroupSize) in;
+layout(push_constant, scalar) uniform Params { GatherParams params; };
+
+layout(set = 1, binding = 0, scalar) readonly buffer Queue { QueueSize queue; };
+layout(set = 1, binding = 1) uniform usamplerBuffer Rays;
+layout(set = 1, binding = 2, scalar) buffer GatheredBlock { Gathered gathered[]; };
+layout(set = 1, binding = 3, scalar) readonly buffer States { GatherState states[]; };
+layout(set = 1, binding = 4, scalar) readonly buffer CutSize { QueueSize cut_size; };
+layout(set = 1, binding = 5) uniform usamplerBuffer TreeNodes;
+layout(set = 1, binding = 6) uniform usamplerBuffer CutNodes;
+layout(set = 1, binding = 7, scalar) readonly buffer Directions { uint directions[]; };
+#include "shaders/lib/ray.glsl"
+#include "shaders/lib/cut_light.glsl"
+
+Incident lightAt(vec3 x, vec3 n, uint random)
+{
+    if (params.mode == kCutNearest)
+        return nearestCutLight(x, n, kInfinity);
+    return cutLight(x, n, random);
+}
+#include "shaders/lib/gather_vertex.glsl"
+#include "shaders/gather/follow_body.glsl"
