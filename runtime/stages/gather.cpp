@@ -6,12 +6,9 @@ GatherStage::GatherStage(const Device& device, const SceneGpu& scene, uint32_t m
       has_specular_(scene.hasFeature(gpu::kFeatureSpecular)), generate_(device.kernel("gather/generate")),
       generate_pixels_(device.kernel("gather/generate_pixels", scene.constants())),
       shade_(device.kernel("gather/shade", scene.constants())),
-      shade_knn_(device.kernel("gather/shade_knn", scene.constants())),
-      follow_(device.kernel("gather/follow", scene.constants())),
-      follow_knn_(device.kernel("gather/follow_knn", scene.constants())), sum_(device.kernel("gather/sum")),
+      shade_knn_(device.kernel("gather/shade_knn", scene.constants())), sum_(device.kernel("gather/sum")),
       add_(device.kernel("gather/add")), project_(device.kernel("gather/project", scene.constants())),
       queue_(device, "gather.queue", max_samples * max_rays_per_sample, scratch),
-      next_queue_(device, "gather.next_queue", max_samples * max_rays_per_sample, scratch),
       hits_(device.texelArray<gpu::Hit>("gather.hits", uint64_t(max_samples) * max_rays_per_sample, scratch)),
       states_(device.array<gpu::GatherState>("gather.states", uint64_t(max_samples) * max_rays_per_sample, scratch)),
       gathered_(device.array<gpu::Gathered>("gather.gathered", uint64_t(max_samples) * max_rays_per_sample, scratch)),
@@ -49,7 +46,7 @@ void GatherStage::record(Recorder& rec, const RayStage& rays, const SamplesStage
 {
     const gpu::GatherParams params = paramsOf(in);
     traceFirstHits(rec, rays, samples, params, in.legs, guide);
-    shade(rec, rays, map, cut, params);
+    shade(rec, map, cut, params);
     rec.run(sum_, max_samples_ * gpu::kRaysGroupSize, params,
             {{"Size", samples.size}, {"GatheredBlock", gathered_}, {"Samples", samples.samples}});
     if (!in.by_direction)
@@ -80,7 +77,7 @@ void GatherStage::recordPixels(Recorder& rec, const RayStage& rays, const Photon
         rays.closest(rec, queue_, hits_, params.seed);
         if (guide)
             guide->splat(rec, queue_, pixel_rays_, hits_, first > 0);
-        shade(rec, rays, map, cut, params);
+        shade(rec, map, cut, params);
         rec.run(add_, here.point_count, here, {{"GatheredBlock", gathered_}, {"Radiance", pixels.radiance}});
     }
 }
@@ -96,20 +93,16 @@ gpu::GatherParams GatherStage::paramsOf(const Input& in) const
             .leg_count = in.legs ? gpu::kLegCount : 0};
 }
 
-void GatherStage::shade(Recorder& rec, const RayStage& rays, const PhotonTreeStage::Output& map,
-                        const CutStage::Output& cut, const gpu::GatherParams& params) const
+void GatherStage::shade(Recorder& rec, const PhotonTreeStage::Output& map, const CutStage::Output& cut,
+                        const gpu::GatherParams& params) const
 {
     const auto scope = rec.scope("gather.shade"); // the lookups: what the cut is there for
-    const bool knn = CutMode(params.mode) == CutMode::kKnn;
-    rays.reset(rec, next_queue_.size);
-    if (knn)
+    if (CutMode(params.mode) == CutMode::kKnn)
         rec.runIndirect(shade_knn_, queue_.size, params,
                         {{"Queue", queue_.size},
                          {"Rays", queue_.rays},
                          {"Hits", hits_},
                          {"States", states_},
-                         {"NextQueue", next_queue_.size},
-                         {"NextRays", next_queue_.rays},
                          {"GatheredBlock", gathered_},
                          {"Size", map.size},
                          {"TreeNodes", map.tree.nodes()},
@@ -119,31 +112,6 @@ void GatherStage::shade(Recorder& rec, const RayStage& rays, const PhotonTreeSta
                         {{"Queue", queue_.size},
                          {"Rays", queue_.rays},
                          {"Hits", hits_},
-                         {"States", states_},
-                         {"NextQueue", next_queue_.size},
-                         {"NextRays", next_queue_.rays},
-                         {"GatheredBlock", gathered_},
-                         {"CutSize", cut.size},
-                         {"TreeNodes", cut.tree.nodes()},
-                         {"CutNodes", cut.nodes},
-                         {"Directions", cut.directions}});
-    if (params.depth_limit == 0)
-        return;
-    rays.close(rec, next_queue_.size);
-    rays.count(rec, next_queue_.size);
-    if (knn)
-        rec.runIndirect(follow_knn_, next_queue_.size, params,
-                        {{"Queue", next_queue_.size},
-                         {"Rays", next_queue_.rays},
-                         {"States", states_},
-                         {"GatheredBlock", gathered_},
-                         {"Size", map.size},
-                         {"TreeNodes", map.tree.nodes()},
-                         {"Photons", map.photons}});
-    else
-        rec.runIndirect(follow_, next_queue_.size, params,
-                        {{"Queue", next_queue_.size},
-                         {"Rays", next_queue_.rays},
                          {"States", states_},
                          {"GatheredBlock", gathered_},
                          {"CutSize", cut.size},

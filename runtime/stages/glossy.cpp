@@ -5,10 +5,8 @@
 GlossyStage::GlossyStage(const Device& device, const SceneGpu& scene, uint32_t max_pixels, const Scratch& scratch)
     : generate_(device.kernel("glossy/generate", scene.constants())),
       shade_(device.kernel("glossy/shade", scene.constants())),
-      follow_(device.kernel("glossy/follow", scene.constants())),
       harmonics_(device.kernel("glossy/harmonics", scene.constants())),
       queue_(device, "glossy.queue", max_pixels, scratch),
-      next_queue_(device, "glossy.next_queue", max_pixels, scratch),
       hits_(device.texelArray<gpu::Hit>("glossy.hits", max_pixels, scratch)),
       states_(device.array<gpu::GatherState>("glossy.states", max_pixels, scratch)),
       lobes_(device.uploadTexels<gpu::GlossyLobe>(
@@ -35,26 +33,10 @@ void GlossyStage::record(Recorder& rec, const RayStage& rays, const CutStage::Ou
              {"Shares", shares_}});
     rays.close(rec, queue_.size);
     rays.closest(rec, queue_, hits_, traceSeed(in.seed, in.first_sample, ~0u));
-    rays.reset(rec, next_queue_.size);
     rec.runIndirect(shade_, queue_.size, params,
                     {{"Queue", queue_.size},
                      {"Rays", queue_.rays},
                      {"Hits", hits_},
-                     {"States", states_},
-                     {"NextQueue", next_queue_.size},
-                     {"NextRays", next_queue_.rays},
-                     {"Radiance", in.radiance},
-                     {"CutSize", cut.size},
-                     {"TreeNodes", cut.tree.nodes()},
-                     {"CutNodes", cut.nodes},
-                     {"Directions", cut.directions}});
-    if (params.depth_limit == 0)
-        return;
-    rays.close(rec, next_queue_.size);
-    rays.count(rec, next_queue_.size);
-    rec.runIndirect(follow_, next_queue_.size, params,
-                    {{"Queue", next_queue_.size},
-                     {"Rays", next_queue_.rays},
                      {"States", states_},
                      {"Radiance", in.radiance},
                      {"CutSize", cut.size},

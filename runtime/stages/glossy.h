@@ -32,7 +32,7 @@ public:
                          const Input& in) const;
 
 private:
-    Kernel generate_, shade_, follow_, harmonics_;
-    RayQueue queue_, next_queue_;
+    Kernel generate_, shade_, harmonics_;
+    RayQueue queue_;
     Buffer hits_, states_, lobes_, shares_;
 };

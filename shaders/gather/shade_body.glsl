@@ -9,11 +9,17 @@ void main()
     GatherState state = GatherState(vec3(0.0), kNone, 0u);
     if (hit.slot != kNone) // a ray that gathers for nothing has none
         state = states[ray.path];
-    float weight = state.throughput.x;
-    GatherVertex vertex = shadeGatherVertex(ray, hit, state, gatherSampler(params, ray.path, 0u), false);
-    gathered[ray.path] = Gathered(vertex.radiance, hit.slot == kNone ? 0.0 : weight / max(hit.t, 1e-6));
-    if (!vertex.goes_on || params.depth_limit == 0u)
-        return;
-    states[ray.path] = state;
-    next_rays[atomicAdd(next_queue.count, 1u)] = vertex.next;
+    Gathered sum = Gathered(vec3(0.0), hit.slot == kNone ? 0.0 : state.throughput.x / max(hit.t, 1e-6));
+    uint path = ray.path, depth = 0u;
+    for (;;)
+    {
+        GatherVertex vertex = shadeGatherVertex(ray, hit, state, gatherSampler(params, path, depth), false);
+        sum.radiance += vertex.radiance;
+        if (!vertex.goes_on || depth >= params.depth_limit)
+            break;
+        ray = vertex.next;
+        ++depth;
+        hit = closestHit(ray.origin, ray.direction, kRayStart, ray.t_max, hash(hash(params.seed, depth), path));
+    }
+    gathered[path] = sum;
 }
