@@ -75,7 +75,7 @@ bool traceSamples(const OpenedScene& opened, const PlayerOptions& options, const
             sum.record(rec, radiance, std::max(begin, first) - first, camera.sample_count);
         }
         if (statistics.frames.empty())
-            statistics.first_submit_ms = statistics.elapsedMs();
+            statistics.noteFirstSubmit(*opened.device);
         statistics.addFrame(rec.submitAndWait());
     }
     statistics.sample_count = options.samples->count();
@@ -121,7 +121,6 @@ Status playReferencePart(const PlayerOptions& options)
     statistics.non_finite_samples = opened->device->download<uint32_t>(stage.nonFiniteCount(), 1)[0];
     statistics.device = opened->device->name();
     statistics.device_bytes = opened->device->allocatedBytes();
-    statistics.pipeline_ms = opened->device->pipelineMs();
     fmt::print(stderr, "{}\n", statistics.summary());
     SampleSum sum = downloaded(*opened, options, stage);
     auto origin = originOf(*opened, options);

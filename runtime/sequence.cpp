@@ -57,7 +57,6 @@ Status Sequence::begin()
                                            opened_.settings, !options_.layers.empty());
         !status)
         return status;
-    statistics_.pipeline_ms = opened_.device->pipelineMs();
     return Success{};
 }
 
