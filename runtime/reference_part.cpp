@@ -2,6 +2,7 @@
 
 #include "image/picture_file.h"
 #include "image/sample_sum.h"
+#include "image/write_image.h"
 #include "runtime/interruption.h"
 #include "runtime/nearest_origin.h"
 #include "runtime/stages/exact_sum.h"
@@ -108,6 +109,8 @@ Status playReferencePart(const PlayerOptions& options)
         fmt::print(stderr, "{} is there; --force renders it again\n", options.output.string());
         return Success{};
     }
+    if (const Status status = canWriteFile(options.output); !status)
+        return status.error().about(options.output.string());
     const auto opened = openScene(options, {}, statistics);
     if (!opened)
         return opened.error();
