@@ -21,5 +21,7 @@ void main()
         return;
     uint pixel = tiledPixel(thread, params.camera.width, pixel_count);
     Ray ray = pixelRay(params.camera, pixel, 0u);
-    hits[thread] = closestHit(ray.origin, ray.direction, kRayStart, ray.t_max, hash(params.trace_seed, pixel));
+    uint row = quotient(pixel, params.camera.width);
+    AlphaSeed seed = AlphaSeed(params.trace_seed, ivec2(pixel - row * params.camera.width, row));
+    hits[thread] = closestHit(ray.origin, ray.direction, kRayStart, ray.t_max, seed);
 }
