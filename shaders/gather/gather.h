@@ -10,7 +10,7 @@ struct GatherState // of a path between two vertices
 {
     vec3 throughput; // of a sample's ray at first: the cosine's density over its own
     uint medium;
-    uint specular; // delta events so far that its light may have come by
+    uint specular; // mirrors and glass so far
 };
 GPU_SIZE(GatherState, 20);
 

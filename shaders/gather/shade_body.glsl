@@ -11,9 +11,10 @@ void main()
         state = states[ray.path];
     Gathered sum = Gathered(vec3(0.0), hit.slot == kNone ? 0.0 : state.throughput.x / max(hit.t, 1e-6));
     uint path = ray.path, depth = 0u;
+    Passage passage = kNoPassage;
     for (;;)
     {
-        GatherVertex vertex = shadeGatherVertex(ray, hit, state, gatherSampler(params, path, depth), false);
+        GatherVertex vertex = shadeGatherVertex(ray, hit, state, passage, gatherSampler(params, path, depth), false);
         sum.radiance += vertex.radiance;
         if (!vertex.goes_on || depth >= params.depth_limit)
             break;

@@ -35,10 +35,11 @@ void main()
     GatherState state = states[ray.path];
     vec3 sum = vec3(0.0);
     uint path = ray.path, depth = 0u;
+    Passage passage = kNoPassage;
     for (;;)
     {
         Sampler sampler_ = Sampler(hash(params.seed, path), params.first_sample, depth * kGatherDimensions);
-        GatherVertex vertex = shadeGatherVertex(ray, hit, state, sampler_, true);
+        GatherVertex vertex = shadeGatherVertex(ray, hit, state, passage, sampler_, true);
         sum += vertex.radiance;
         if (!vertex.goes_on || depth >= params.depth_limit)
             break;

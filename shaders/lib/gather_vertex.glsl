@@ -47,24 +47,39 @@ Sampler gatherSampler(GatherParams params, uint path, uint depth)
     return Sampler(hash(params.seed, origin), path - origin * params.ray_count, 1u + depth * kGatherDimensions);
 }
 
-// Lights are sampled where a glossy ray meets frosted glass, and what the ray then meets is not counted once more. With sharper
-// lobes than this the ray finds lights of some size with less noise.
-const float kLightSamplingAlpha = 0.1;
+/// A path's way through the last frosted glass, where a light was sampled, too: both count by multiple importance sampling.
+struct Passage
+{
+    float pdf;       // per steradian, of the direction in which it left; 0: there was none since the last mirror
+    float travelled; // metres since
+};
+const Passage kNoPassage = Passage(0.0, 0.0);
 
-/// Direct light that comes through frosted glass: of one light.
-vec3 lightThrough(PathVertex v, inout Sampler sampler_)
+/// Direct light that comes through frosted glass: of one light. @param passing probability that the path goes on through it
+vec3 lightThrough(PathVertex v, float passing, inout Sampler sampler_)
 {
     Surface s = v.surface;
     LightSample light = sampleLight(s.position, sampler_);
     vec3 wi = light.wi * v.frame;
-    bool samples = light.pdf == 0.0 || v.bsdf.alpha >= kLightSamplingAlpha;
-    if (light.weight == vec3(0.0) || !samples || wi.z >= 0.0 || !sidesAgree(s, light.wi, wi.z))
+    if (light.weight == vec3(0.0) || wi.z >= 0.0 || !sidesAgree(s, light.wi, wi.z))
         return vec3(0.0);
-    vec3 carried = evaluateBsdf(v.bsdf, v.wo, wi).specular * -wi.z * light.weight;
-    if (carried == vec3(0.0))
-        return carried;
+    BsdfValue f = evaluateBsdf(v.bsdf, v.wo, wi);
+    if (f.specular == vec3(0.0))
+        return vec3(0.0);
+    vec3 carried = f.specular * -wi.z * light.weight;
+    if (light.pdf > 0.0)
+        carried *= misWeight(light.pdf, f.pdf / max(passing, 1e-6));
     Ray ray = shadowRay(s, light, 0u);
     return carried * transmittance(ray.origin, ray.direction, ray.t_max);
+}
+
+/// The weight of an emitter that the path meets.
+float weightOfEmitter(Passage passage, Surface s)
+{
+    uint light = loadTriangle(s.triangle).light;
+    if (!hasFeature(kFeatureTransmission) || passage.pdf == 0.0 || light == kNone)
+        return 1.0;
+    return misWeight(passage.pdf, trianglePdf(light, s.area, passage.travelled, abs(dot(s.geometric_normal, s.direction))));
 }
 
 struct GatherVertex
@@ -78,7 +93,7 @@ struct GatherVertex
 /// @param glossy whether the path left a glossy lobe: emitters and sky met through mirrors or glass then count, and it goes on through
 /// frosted glass. From the diffuse lobe the former are caustics, and the latter reads the light behind it. Emitters met
 /// directly are direct light: they never count.
-GatherVertex shadeGatherVertex(Ray ray, Hit hit, inout GatherState state, Sampler sampler_, bool glossy)
+GatherVertex shadeGatherVertex(Ray ray, Hit hit, inout GatherState state, inout Passage passage, Sampler sampler_, bool glossy)
 {
     GatherVertex vertex = GatherVertex(vec3(0.0), false, ray);
     bool counts = glossy && state.specular > 0u;
@@ -86,6 +101,8 @@ GatherVertex shadeGatherVertex(Ray ray, Hit hit, inout GatherState state, Sample
     {
         if (counts)
             vertex.radiance = state.throughput * environmentRadiance(ray.direction);
+        if (counts && hasFeature(kFeatureTransmission) && passage.pdf > 0.0)
+            vertex.radiance *= misWeight(passage.pdf, environmentPdf(ray.direction));
         return vertex;
     }
     PathVertex v = vertexAt(ray, hit);
@@ -93,24 +110,23 @@ GatherVertex shadeGatherVertex(Ray ray, Hit hit, inout GatherState state, Sample
     if (isUnlit(v))
         return vertex;
     state.throughput *= transmittanceTo(v, state.medium, hit.t);
+    passage.travelled += hit.t;
     if (counts && emits(s))
-        vertex.radiance = state.throughput * v.material.emission;
+        vertex.radiance = state.throughput * v.material.emission * weightOfEmitter(passage, s);
     uvec2 bits = nextBits(sampler_);
     float choice = toUnitFloat(bits.x);
     disperse(v, state.throughput, toUnitFloat(hash(bits.y, 1u)));
     Bsdf b = v.bsdf;
     LobeProbabilities p = lobeProbabilities(b, v.wo);
-    float scattered = p.diffuse + glossyProbability(b, p), read = 1.0;
+    float scattered = p.diffuse + glossyProbability(b, p), read = hasDeltaLobe(b) ? scattered : 1.0;
     vec2 within = vec2(0.5);
     bool frosted = isFrosted(b), follows = glossy && frosted && !isTranslucent(b);
-    if (follows)
+    if (follows) // and reads all but that lobe: at the angle of total reflection few chances to do so would be very bright
     {
-        scattered -= p.transmission;
         within = nextPair(sampler_);
-        vertex.radiance += state.throughput * lightThrough(v, sampler_);
+        vertex.radiance += state.throughput * lightThrough(v, 1.0 - scattered + p.transmission, sampler_);
+        read = 1.0;
     }
-    if (follows || hasDeltaLobe(b))
-        read = scattered;
     if (choice < read)
     {
         bool passes = isTranslucent(b) || (frosted && !follows);
@@ -122,7 +138,11 @@ GatherVertex shadeGatherVertex(Ray ray, Hit hit, inout GatherState state, Sample
             side -= 2.0;
         } while (side == -1.0 && passes);
         vertex.radiance += state.throughput * light / read;
-        return vertex;
+        scattered -= p.transmission;
+        if (!follows || scattered >= 1.0)
+            return vertex;
+        state.throughput *= 1.0 - scattered;
+        choice = mix(scattered, 1.0, choice);
     }
     BsdfSample next = sampleBsdf(b, v.wo, choice, within);
     vec3 wi = v.frame * next.wi;
@@ -130,10 +150,9 @@ GatherVertex shadeGatherVertex(Ray ray, Hit hit, inout GatherState state, Sample
         return vertex;
     state.medium = mediumAfter(v, next, state.medium);
     state.throughput *= next.weight;
-    if (next.pdf > 0.0)
-        state.specular = uint(b.alpha < kLightSamplingAlpha);
-    else
-        state.specular += uint(!next.passed);
+    state.specular += uint(!next.passed);
+    if (!next.passed)
+        passage = Passage(next.pdf / max(1.0 - scattered, 1e-6), 0.0);
     vertex.goes_on = true;
     vertex.next = leavingRay(s, wi, kInfinity, ray.path);
     return vertex;
