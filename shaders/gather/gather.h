@@ -6,11 +6,11 @@
 
 GPU_NAMESPACE_BEGIN
 
-struct GatherState // of a path between two vertices
+struct GatherState // of a ray between two links of its specular chain
 {
     vec3 throughput; // of a sample's ray at first: the cosine's density over its own
     uint medium;
-    uint specular; // mirrors and glass so far
+    uint specular; // delta events so far
 };
 GPU_SIZE(GatherState, 20);
 
@@ -35,13 +35,14 @@ struct GatherParams
 {
     uint ray_count; // of a sample or pixel
     uint seed;
-    uint depth_limit;  // most specular events of a path
+    uint depth; // delta events before this one
+    uint depth_limit;
     uint mode;         // kCut*
     uint photon_count; // k, in mode kCutKnn
     float radius;      // of density estimation at most, in mode kCutKnn: of the distance from the viewer
     uint leg_count;    // for aiming: all legs, or 0
 };
-GPU_SIZE(GatherParams, 28);
+GPU_SIZE(GatherParams, 32);
 
 GPU_NAMESPACE_END
 #endif
