@@ -86,14 +86,27 @@ std::vector<uint8_t> pngNoteChunks(std::span<const PictureNote> notes)
     return bytes;
 }
 
-} // namespace
-
-Status writeFile(const std::filesystem::path& path, std::span<const uint8_t> bytes)
+Status checkNoFolder(const std::filesystem::path& path)
 {
     std::error_code ignored;
     if (std::filesystem::is_directory(path, ignored))
         return Error{ExitCode::kIo, "The output path is a folder; give a file name."};
+    return Success{};
+}
+} // namespace
 
+Status canWriteFile(const std::filesystem::path& path)
+{
+    if (const Status status = checkNoFolder(path); !status)
+        return status;
+    const TemporaryFile file(path);
+    return file.isOpen() ? Status(Success{}) : cannotWrite("created");
+}
+
+Status writeFile(const std::filesystem::path& path, std::span<const uint8_t> bytes)
+{
+    if (const Status status = checkNoFolder(path); !status)
+        return status;
     TemporaryFile file(path);
     if (!file.isOpen())
         return cannotWrite("created");

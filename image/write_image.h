@@ -11,6 +11,9 @@
 /// Errors: kIo with the system's reason; the temporary file is gone then.
 Status writeFile(const std::filesystem::path& path, std::span<const uint8_t> bytes);
 
+/// Whether writeFile() could begin, for work whose result would be lost if not: its error, and `path` stays as it is.
+Status canWriteFile(const std::filesystem::path& path);
+
 /// Channels of an OpenEXR picture that belong together.
 struct ExrLayer
 {

@@ -21,10 +21,14 @@ constexpr uint32_t kRimProbes = 12;
 /// distribution leaves few photons elsewhere.
 constexpr uint32_t kWarmUpRounds = 4;
 
-/// Scratch memory of a pixel from its signals on (signals, motion, compared and filtered light, picture): no stage but direct
-/// light needs more; and what aligning their buffers may cost.
-constexpr uint64_t kSignalBytes =
-    4 * sizeof(gpu::LightSignal) + sizeof(gpu::Motion) + sizeof(gpu::PixelPairs) + sizeof(gpu::vec3);
+/// Scratch memory from the signals on: they themselves, motion, and what histories are compared by.
+uint64_t signalBytes(uint32_t width, uint32_t height)
+{
+    return uint64_t(width) * height * (2 * sizeof(gpu::LightSignal) + sizeof(gpu::Motion)) +
+           HistoryStage::scratchBytes(width, height);
+}
+
+/// What aligning the buffers may cost.
 constexpr uint64_t kPadding = 1 << 16;
 
 constexpr float kGuideReach = 0.25f; // of the view distance: up to this far from their camera guided photons are reused
@@ -107,7 +111,7 @@ GlobalIllumination::GlobalIllumination(const Device& device, const SceneGpu& sce
       has_mirrors_(has_caustic_targets_ || scene.hasFeature(gpu::kFeatureTransmission | gpu::kFeatureThin)),
       point_count_(width * height * (splitsMirrors(device, scene, width * height) ? 2 : 1)),
       scratch_(std::max(DirectStage::scratchBytes(scene, width, height, point_count_ / (width * height)),
-                        kSignalBytes * width * height) +
+                        signalBytes(width, height)) +
                kPadding),
       light_(device, point_count_),
       primary_(device, scene, width * height, point_count_ > width * height, scratch_.stage()),

@@ -17,7 +17,7 @@ bool renderSamples(Recorder& rec, Renderer& renderer, const OpenedScene& opened,
             renderer.record(rec, moment.camera.value_or(posed), opened.settings, seed, batch);
         }
         if (statistics.frames.empty())
-            statistics.first_submit_ms = statistics.elapsedMs();
+            statistics.noteFirstSubmit(*opened.device);
         statistics.addFrame(rec.submitAndWait());
         sample_count -= batch;
     }
@@ -35,7 +35,6 @@ Status playHeadless(const PlayerOptions& options)
                                            opened->settings, !options.layers.empty());
         !status)
         return status;
-    statistics.pipeline_ms = opened->device->pipelineMs();
     Recorder rec(*opened->device);
     rec.timeScopes(!options.stats.empty());
     const uint32_t sample_count = options.sample_count > 0 ? options.sample_count : std::max(options.frame_count, 1u);

@@ -10,9 +10,9 @@ LightFilter::LightFilter(const Device& device, const SceneGpu& scene, const Sett
     if (filters || settings.history_frames > 0 || settings.antialias_frames > 0)
         signals_.emplace(device, scene, width * height, scratch);
     if (settings.history_frames > 0)
-        history_.emplace(device, width, height, scratch);
+        history_.emplace(device, width, height, scratch.part());
     if (filters)
-        denoise_.emplace(device, width * height, scratch);
+        denoise_.emplace(device, width * height, scratch.part());
 }
 
 void LightFilter::record(Recorder& rec, const FrameInfo& frame, const SurfaceBuffers& surface,

@@ -10,7 +10,8 @@
 class LightFilter
 {
 public:
-    /// Allocates for what `settings` ask for. @param is_noisy whether the filter over pixels may be needed
+    /// Allocates for what `settings` ask for. @param is_noisy whether the filter over pixels may be needed, @param scratch holds the
+    /// signals afterwards; what is then allocated from it must not be written before record() is done
     LightFilter(const Device& device, const SceneGpu& scene, const Settings& settings, uint32_t width, uint32_t height,
                 bool is_noisy, const Scratch& scratch = {});
 

@@ -1,6 +1,7 @@
 // lumicut-play: the command line of the player.
 #include "tools/cli/documentation.h" // before our check(), whose name its options use too
 
+#include "image/write_image.h"
 #include "runtime/capture.h"
 #include "runtime/headless.h"
 #include "runtime/opened_scene.h"
@@ -140,6 +141,12 @@ Status checkOptions(const PlayerOptions& options)
         if (!std::filesystem::is_directory(folder))
             return Error{ExitCode::kIo, fmt::format("there is no folder {} to write to", folder.string()),
                          path.string()};
+        // What is there of a sequence or of --samples need not be written.
+        const bool may_be_there = path == options.output && (options.sequence || options.samples);
+        if (path.empty() || may_be_there || options.list_missing)
+            continue;
+        if (const Status status = canWriteFile(path); !status)
+            return status.error().about(path.string());
     }
     if (options.frame_count > 0 && options.sample_count > 0)
         return Error{ExitCode::kUsage, "a count of --frames and --spp both say how much to render; give one"};

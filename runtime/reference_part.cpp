@@ -2,6 +2,7 @@
 
 #include "image/picture_file.h"
 #include "image/sample_sum.h"
+#include "image/write_image.h"
 #include "runtime/interruption.h"
 #include "runtime/nearest_origin.h"
 #include "runtime/stages/exact_sum.h"
@@ -75,7 +76,7 @@ bool traceSamples(const OpenedScene& opened, const PlayerOptions& options, const
             sum.record(rec, radiance, std::max(begin, first) - first, camera.sample_count);
         }
         if (statistics.frames.empty())
-            statistics.first_submit_ms = statistics.elapsedMs();
+            statistics.noteFirstSubmit(*opened.device);
         statistics.addFrame(rec.submitAndWait());
     }
     statistics.sample_count = options.samples->count();
@@ -108,6 +109,8 @@ Status playReferencePart(const PlayerOptions& options)
         fmt::print(stderr, "{} is there; --force renders it again\n", options.output.string());
         return Success{};
     }
+    if (const Status status = canWriteFile(options.output); !status)
+        return status.error().about(options.output.string());
     const auto opened = openScene(options, {}, statistics);
     if (!opened)
         return opened.error();
@@ -121,7 +124,6 @@ Status playReferencePart(const PlayerOptions& options)
     statistics.non_finite_samples = opened->device->download<uint32_t>(stage.nonFiniteCount(), 1)[0];
     statistics.device = opened->device->name();
     statistics.device_bytes = opened->device->allocatedBytes();
-    statistics.pipeline_ms = opened->device->pipelineMs();
     fmt::print(stderr, "{}\n", statistics.summary());
     SampleSum sum = downloaded(*opened, options, stage);
     auto origin = originOf(*opened, options);

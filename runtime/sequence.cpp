@@ -1,5 +1,6 @@
 #include "runtime/sequence.h"
 
+#include "image/write_image.h"
 #include "runtime/capture.h"
 #include "runtime/frame_files.h"
 #include "runtime/frame_seed.h"
@@ -57,7 +58,6 @@ Status Sequence::begin()
                                            opened_.settings, !options_.layers.empty());
         !status)
         return status;
-    statistics_.pipeline_ms = opened_.device->pipelineMs();
     return Success{};
 }
 
@@ -204,6 +204,21 @@ Status checkOrigins(const FrameFiles& files, std::span<const uint32_t> frames, s
     return Success{};
 }
 
+/// Before anything is rendered: whether the frames' folder can be written to, and no folder has a frame's name.
+Status checkTargets(const FrameFiles& files, std::span<const uint32_t> frames)
+{
+    for (const uint32_t frame : frames)
+    {
+        const std::filesystem::path path = files.of(frame);
+        std::error_code ignored;
+        if (frame != frames.front() && !std::filesystem::is_directory(path, ignored))
+            continue;
+        if (const Status status = canWriteFile(path); !status)
+            return status.error().about(path.string());
+    }
+    return Success{};
+}
+
 Status leaveAlone(const PlayerOptions& options, const Statistics& statistics)
 {
     fmt::print(stderr, "all {} frames are there; --force renders them again\n", options.sequence->count());
@@ -252,6 +267,8 @@ Status playSequence(const PlayerOptions& options)
     Statistics statistics;
     if (request->frames.empty())
         return leaveAlone(options, statistics);
+    if (const Status status = checkTargets(*files, request->frames); !status)
+        return status;
     const auto opened = openScene(options, {}, statistics);
     if (!opened)
         return opened.error();

@@ -54,7 +54,7 @@ std::string Statistics::summary() const
 {
     std::string text = fmt::format(
         "{}: {} samples a pixel, first frame submitted after {:.0f} ms (device {:.0f}, beside it package {:.0f}, "
-        "upload {:.0f}, stages {:.0f}, of these pipelines {:.0f})",
+        "upload {:.0f}, stages {:.0f}, of these waiting for pipelines {:.0f})",
         device, sample_count, first_submit_ms, device_ms, package_ms, upload_ms, first_submit_ms - ready_ms,
         pipeline_ms);
     for (const StageSummary& stage : summarise(frames))

@@ -15,7 +15,7 @@ struct Statistics
     double upload_ms = 0;  // bringing the scene to it
     double ready_ms = 0;   // all that done, since the start; what follows is the stages' memory, tables and pipelines
     double first_submit_ms = 0; // first frame handed to the device, since the start
-    double pipeline_ms = 0;     // of that, building pipelines
+    double pipeline_ms = 0;     // of that, waiting for pipelines, which threads build
     uint64_t device_bytes = 0;
     uint32_t sample_count = 0; // a pixel
     uint32_t non_finite_samples = 0;
@@ -28,6 +28,12 @@ struct Statistics
     std::vector<std::vector<StageTime>> frames; // of the first kMeasuredFrames submissions
 
     double elapsedMs() const;
+    /// Of the first frame, recorded and about to be submitted.
+    void noteFirstSubmit(const Device& opened)
+    {
+        first_submit_ms = elapsedMs();
+        pipeline_ms = opened.pipelineMs();
+    }
     /// The result of `work()`, and in `ms` how long it took.
     template <typename Work>
     auto timed(double& ms, const Work& work) const

@@ -282,10 +282,7 @@ void WindowedPlayer::showFrame(Statistics& statistics)
         swapchain_.endOverlay(commands);
     }
     if (statistics.first_submit_ms == 0)
-    {
-        statistics.first_submit_ms = statistics.elapsedMs();
-        statistics.pipeline_ms = opened_.device->pipelineMs();
-    }
+        statistics.noteFirstSubmit(*opened_.device);
     rec.submit(swapchain_.acquired(), swapchain_.rendered());
     flights_[turn_].submitted = true;
     swapchain_.present();

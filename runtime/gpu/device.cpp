@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <fstream>
 #include <iterator>
 
@@ -111,6 +110,7 @@ Device::~Device()
     if (!device_)
         return;
     waitIdle();
+    pipelines_.reset(); // before anything that its threads use
     staging_ = {};
     kernels_.clear();
     savePipelineCache();
@@ -148,6 +148,7 @@ void Device::loadPipelineCache()
                                          .initialDataSize = data.size(),
                                          .pInitialData = data.data()};
     vulkanCheck(vkCreatePipelineCache(device_, &info, nullptr, &pipeline_cache_));
+    pipelines_ = std::make_unique<PipelineBuilder>(*this, pipeline_cache_);
 }
 
 void Device::savePipelineCache() const
@@ -220,7 +221,7 @@ Kernel Device::kernel(const KernelCode& code, const SharedConstants& shared,
     return entry->second;
 }
 
-Kernel Device::createKernel(const KernelCode& code, std::span<const ConstantValue> constants) const
+Kernel Device::createKernel(const KernelCode& code, std::vector<ConstantValue> constants) const
 {
     Kernel kernel;
     kernel.state_ = std::make_shared<Kernel::State>();
@@ -253,37 +254,7 @@ Kernel Device::createKernel(const KernelCode& code, std::span<const ConstantValu
     };
     vulkanCheck(vkCreatePipelineLayout(device_, &layout_info, nullptr, &state.layout));
 
-    const auto start = std::chrono::steady_clock::now();
-    const VkShaderModuleCreateInfo module_info{.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
-                                               .codeSize = code.words.size_bytes(),
-                                               .pCode = code.words.data()};
-    VkShaderModule module;
-    vulkanCheck(vkCreateShaderModule(device_, &module_info, nullptr, &module));
-    std::vector<VkSpecializationMapEntry> entries;
-    std::vector<uint32_t> values;
-    for (const auto& [id, value] : constants)
-    {
-        entries.push_back(
-            {.constantID = id, .offset = uint32_t(values.size() * sizeof(uint32_t)), .size = sizeof(uint32_t)});
-        values.push_back(value);
-    }
-    const VkSpecializationInfo specialization{.mapEntryCount = uint32_t(entries.size()),
-                                              .pMapEntries = entries.data(),
-                                              .dataSize = values.size() * sizeof(uint32_t),
-                                              .pData = values.data()};
-    const VkComputePipelineCreateInfo info{
-        .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
-        .stage = {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
-                  .stage = VK_SHADER_STAGE_COMPUTE_BIT,
-                  .module = module,
-                  .pName = "main",
-                  .pSpecializationInfo = &specialization},
-        .layout = state.layout,
-    };
-    vulkanCheck(vkCreateComputePipelines(device_, pipeline_cache_, 1, &info, nullptr, &state.pipeline));
-    vkDestroyShaderModule(device_, module, nullptr);
-    nameObject(VK_OBJECT_TYPE_PIPELINE, uint64_t(state.pipeline), code.name);
     ++pipeline_count_;
-    pipeline_ms_ += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    pipelines_->build(kernel.state_, std::move(constants));
     return kernel;
 }

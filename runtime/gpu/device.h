@@ -4,6 +4,7 @@
 #include "runtime/gpu/instance.h"
 #include "runtime/gpu/kernel.h"
 #include "runtime/gpu/memory.h"
+#include "runtime/gpu/pipeline_builder.h"
 #include "runtime/gpu/scratch.h"
 
 #include <cstring>
@@ -26,7 +27,7 @@ public:
     Device& operator=(const Device&) = delete;
 
     /// "samples/assign" is shaders/samples/assign.comp. Aborts where there is no such kernel.
-    /// Kernels are cached: the same name and constants give the same one.
+    /// Kernels are cached: the same name and constants give the same one. Returns at once, while threads build the pipeline (pipeline()).
     /// @param constants of the kernel; others keep the value in the shader. Aborts where the kernel does not use one of them.
     Kernel kernel(std::string_view name, std::initializer_list<Constant> constants = {}) const
     {
@@ -105,9 +106,13 @@ public:
     bool isCpu() const { return properties_.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU; }
     /// Block-compressed images are sampled by hardware.
     bool samplesBlocks() const { return samples_blocks_; }
-    /// Milliseconds spent building pipelines so far.
-    double pipelineMs() const { return pipeline_ms_; }
-    /// Pipelines built so far.
+    /// The kernel's pipeline; waits until it is built.
+    VkPipeline pipeline(const Kernel& kernel) const { return pipelines_->wait(*kernel.state_); }
+    /// Pipelines that are not being built yet never are. For a program that ends without closing the device.
+    void stopBuilding() { pipelines_->stop(); }
+    /// Milliseconds spent waiting for pipelines so far.
+    double pipelineMs() const { return pipelines_->waitedMs(); }
+    /// Pipelines asked for so far.
     uint64_t pipelineCount() const { return pipeline_count_; }
     /// Memory that buffers and images have now, bytes.
     uint64_t allocatedBytes() const { return allocated_bytes_; }
@@ -127,10 +132,10 @@ private:
     void createLayouts();
     void loadPipelineCache();
     void savePipelineCache() const;
-    using ConstantValue = std::pair<uint32_t, uint32_t>; // id, value
+    using ConstantValue = PipelineBuilder::ConstantValue;
     static std::vector<ConstantValue> constantValues(const KernelCode& code, const SharedConstants& shared,
                                                      std::initializer_list<Constant> constants);
-    Kernel createKernel(const KernelCode& code, std::span<const ConstantValue> constants) const;
+    Kernel createKernel(const KernelCode& code, std::vector<ConstantValue> constants) const;
     Buffer buffer(std::string_view name, uint64_t bytes, Placement placement, const Scratch& scratch = {}) const;
     Buffer withTexels(Buffer buffer) const;
     Buffer uploadBytes(std::string_view name, std::span<const std::byte> data) const;
@@ -154,8 +159,8 @@ private:
     VkPipelineCache pipeline_cache_ = VK_NULL_HANDLE;
     std::filesystem::path pipeline_cache_path_;
     PFN_vkSetDebugUtilsObjectNameEXT set_name_ = nullptr;
+    std::unique_ptr<PipelineBuilder> pipelines_;
     mutable std::map<std::pair<std::string, std::vector<ConstantValue>>, Kernel> kernels_; // by name and constants
     mutable Buffer staging_; // kept: drivers take longer to lock such memory in place than to copy what goes through it
-    mutable double pipeline_ms_ = 0;
     mutable uint64_t pipeline_count_ = 0, allocated_bytes_ = 0, allocation_count_ = 0;
 };

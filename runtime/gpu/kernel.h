@@ -54,21 +54,21 @@ struct KernelCode
 /// Every kernel of the build, sorted by name.
 std::span<const KernelCode> kernelCodes();
 
-/// A compute pipeline; a handle that may be copied. Lives no longer than its Device.
+/// A compute pipeline, which Device::pipeline() waits for; a handle that may be copied. Lives no longer than its Device.
 class Kernel
 {
 public:
     const KernelCode& code() const { return *state_->code; }
-    VkPipeline pipeline() const { return state_->pipeline; }
     VkPipelineLayout layout() const { return state_->layout; }
 
 private:
     friend class Device;
+    friend class PipelineBuilder;
     struct State
     {
         VkDevice device = VK_NULL_HANDLE;
         const KernelCode* code = nullptr;
-        VkPipeline pipeline = VK_NULL_HANDLE;
+        VkPipeline pipeline = VK_NULL_HANDLE; // PipelineBuilder's, until it is built
         VkPipelineLayout layout = VK_NULL_HANDLE;
         VkDescriptorSetLayout set_layout = VK_NULL_HANDLE;
         ~State();

@@ -240,8 +240,7 @@ void Recorder::prepare(const Kernel& kernel, const void* params, size_t param_by
           bindings.size(), list());
 
     check(bindings.size() <= 32, "{}: {} buffers", code.name, bindings.size());
-    prepared_ = {.pipeline = kernel.pipeline(),
-                 .layout = kernel.layout(),
+    prepared_ = {.layout = kernel.layout(),
                  .first_buffer = uint32_t(bound_.size()),
                  .buffer_count = uint32_t(bindings.size()),
                  .first_byte = addBytes(params, param_bytes),
@@ -272,6 +271,7 @@ void Recorder::prepare(const Kernel& kernel, const void* params, size_t param_by
     }
     if (arguments)
         note(*arguments, true, false);
+    prepared_.pipeline = device_.pipeline(kernel); // last: it may have to wait
 }
 
 void Recorder::flush()

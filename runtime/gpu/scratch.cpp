@@ -2,6 +2,14 @@
 
 #include <algorithm>
 
+Scratch Scratch::part() const
+{
+    Scratch scratch;
+    if (stage_)
+        scratch.stage_ = std::make_shared<Stage>(*stage_);
+    return scratch;
+}
+
 Scratch::Place Scratch::place(const VkMemoryRequirements& needs,
                               const std::function<std::shared_ptr<Memory>(uint64_t bytes)>& allocate) const
 {

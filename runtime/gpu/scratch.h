@@ -15,6 +15,10 @@ public:
     /// No pool: every buffer has memory of its own.
     Scratch() = default;
 
+    /// For a part of the stage that goes on from here and shares its memory with the other parts that do: they run one after the
+    /// other. What is allocated from this scratch later may lie there, too.
+    Scratch part() const;
+
 private:
     friend class ScratchPool;
     friend class Device;

@@ -9,7 +9,6 @@ GatherStage::GatherStage(const Device& device, const SceneGpu& scene, uint32_t m
       shade_knn_(device.kernel("gather/shade_knn", scene.constants())), sum_(device.kernel("gather/sum")),
       add_(device.kernel("gather/add")), project_(device.kernel("gather/project", scene.constants())),
       queue_(device, "gather.queue", max_samples * max_rays_per_sample, scratch),
-      next_queue_(device, "gather.next_queue", max_samples * max_rays_per_sample, scratch),
       hits_(device.texelArray<gpu::Hit>("gather.hits", uint64_t(max_samples) * max_rays_per_sample, scratch)),
       states_(device.array<gpu::GatherState>("gather.states", uint64_t(max_samples) * max_rays_per_sample, scratch)),
       gathered_(device.array<gpu::Gathered>("gather.gathered", uint64_t(max_samples) * max_rays_per_sample, scratch)),
@@ -47,7 +46,7 @@ void GatherStage::record(Recorder& rec, const RayStage& rays, const SamplesStage
 {
     const gpu::GatherParams params = paramsOf(in);
     traceFirstHits(rec, rays, samples, params, in.legs, guide);
-    follow(rec, rays, map, cut, params);
+    shade(rec, map, cut, params);
     rec.run(sum_, max_samples_ * gpu::kRaysGroupSize, params,
             {{"Size", samples.size}, {"GatheredBlock", gathered_}, {"Samples", samples.samples}});
     if (!in.by_direction)
@@ -78,7 +77,7 @@ void GatherStage::recordPixels(Recorder& rec, const RayStage& rays, const Photon
         rays.closest(rec, queue_, hits_, params.seed);
         if (guide)
             guide->splat(rec, queue_, pixel_rays_, hits_, first > 0);
-        follow(rec, rays, map, cut, params);
+        shade(rec, map, cut, params);
         rec.run(add_, here.point_count, here, {{"GatheredBlock", gathered_}, {"Radiance", pixels.radiance}});
     }
 }
@@ -87,7 +86,6 @@ gpu::GatherParams GatherStage::paramsOf(const Input& in) const
 {
     return {.ray_count = in.ray_count,
             .seed = in.seed,
-            .depth = 0,
             .depth_limit = has_specular_ ? in.specular_depth : 0,
             .mode = uint32_t(in.mode),
             .photon_count = in.photon_count,
@@ -95,45 +93,29 @@ gpu::GatherParams GatherStage::paramsOf(const Input& in) const
             .leg_count = in.legs ? gpu::kLegCount : 0};
 }
 
-void GatherStage::follow(Recorder& rec, const RayStage& rays, const PhotonTreeStage::Output& map,
-                         const CutStage::Output& cut, gpu::GatherParams params) const
+void GatherStage::shade(Recorder& rec, const PhotonTreeStage::Output& map, const CutStage::Output& cut,
+                        const gpu::GatherParams& params) const
 {
-    const RayQueue* queue = &queue_;
-    const RayQueue* next = &next_queue_;
-    for (; params.depth <= params.depth_limit; ++params.depth)
-    {
-        if (params.depth > 0)
-            rays.closest(rec, *queue, hits_, traceSeed(params.seed, 0, params.depth));
-        rays.reset(rec, next->size);
-        {
-            const auto scope = rec.scope("gather.shade"); // the lookups: what the cut is there for
-            if (CutMode(params.mode) == CutMode::kKnn)
-                rec.runIndirect(shade_knn_, queue->size, params,
-                                {{"Queue", queue->size},
-                                 {"Rays", queue->rays},
-                                 {"Hits", hits_},
-                                 {"States", states_},
-                                 {"NextQueue", next->size},
-                                 {"NextRays", next->rays},
-                                 {"GatheredBlock", gathered_},
-                                 {"Size", map.size},
-                                 {"TreeNodes", map.tree.nodes()},
-                                 {"Photons", map.photons}});
-            else
-                rec.runIndirect(shade_, queue->size, params,
-                                {{"Queue", queue->size},
-                                 {"Rays", queue->rays},
-                                 {"Hits", hits_},
-                                 {"States", states_},
-                                 {"NextQueue", next->size},
-                                 {"NextRays", next->rays},
-                                 {"GatheredBlock", gathered_},
-                                 {"CutSize", cut.size},
-                                 {"TreeNodes", cut.tree.nodes()},
-                                 {"CutNodes", cut.nodes},
-                                 {"Directions", cut.directions}});
-        }
-        rays.close(rec, next->size);
-        std::swap(queue, next);
-    }
+    const auto scope = rec.scope("gather.shade"); // the lookups: what the cut is there for
+    if (CutMode(params.mode) == CutMode::kKnn)
+        rec.runIndirect(shade_knn_, queue_.size, params,
+                        {{"Queue", queue_.size},
+                         {"Rays", queue_.rays},
+                         {"Hits", hits_},
+                         {"States", states_},
+                         {"GatheredBlock", gathered_},
+                         {"Size", map.size},
+                         {"TreeNodes", map.tree.nodes()},
+                         {"Photons", map.photons}});
+    else
+        rec.runIndirect(shade_, queue_.size, params,
+                        {{"Queue", queue_.size},
+                         {"Rays", queue_.rays},
+                         {"Hits", hits_},
+                         {"States", states_},
+                         {"GatheredBlock", gathered_},
+                         {"CutSize", cut.size},
+                         {"TreeNodes", cut.tree.nodes()},
+                         {"CutNodes", cut.nodes},
+                         {"Directions", cut.directions}});
 }

@@ -67,13 +67,13 @@ private:
     static constexpr uint32_t kMostPixelRays = 256, kMostPasses = 8;
 
     gpu::GatherParams paramsOf(const Input& in) const;
-    /// Follows the rays of queue_, whose first hits are in hits_, to gathered_.
-    void follow(Recorder& rec, const RayStage& rays, const PhotonTreeStage::Output& map, const CutStage::Output& cut,
-                gpu::GatherParams params) const;
+    /// Sets gathered_ by the light that the rays of queue_ find, whose first hits are in hits_.
+    void shade(Recorder& rec, const PhotonTreeStage::Output& map, const CutStage::Output& cut,
+               const gpu::GatherParams& params) const;
 
     uint32_t max_samples_, pixel_rays_;
     bool has_specular_;
     Kernel generate_, generate_pixels_, shade_, shade_knn_, sum_, add_, project_;
-    RayQueue queue_, next_queue_;
+    RayQueue queue_;
     Buffer hits_, states_, gathered_, directions_, no_legs_, harmonics_;
 };

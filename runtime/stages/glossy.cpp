@@ -7,7 +7,6 @@ GlossyStage::GlossyStage(const Device& device, const SceneGpu& scene, uint32_t m
       shade_(device.kernel("glossy/shade", scene.constants())),
       harmonics_(device.kernel("glossy/harmonics", scene.constants())),
       queue_(device, "glossy.queue", max_pixels, scratch),
-      next_queue_(device, "glossy.next_queue", max_pixels, scratch),
       hits_(device.texelArray<gpu::Hit>("glossy.hits", max_pixels, scratch)),
       states_(device.array<gpu::GatherState>("glossy.states", max_pixels, scratch)),
       lobes_(device.uploadTexels<gpu::GlossyLobe>(
@@ -22,7 +21,6 @@ void GlossyStage::record(Recorder& rec, const RayStage& rays, const CutStage::Ou
                              .width = in.width,
                              .first_sample = in.first_sample,
                              .seed = in.seed,
-                             .depth = 0,
                              .depth_limit = in.specular_depth,
                              .shared_ = in.shared,
                              .roulette_threshold = in.roulette_threshold};
@@ -34,27 +32,17 @@ void GlossyStage::record(Recorder& rec, const RayStage& rays, const CutStage::Ou
              {"States", states_},
              {"Shares", shares_}});
     rays.close(rec, queue_.size);
-    const RayQueue* queue = &queue_;
-    const RayQueue* next = &next_queue_;
-    for (; params.depth <= params.depth_limit; ++params.depth)
-    {
-        rays.closest(rec, *queue, hits_, traceSeed(in.seed, in.first_sample, ~params.depth));
-        rays.reset(rec, next->size);
-        rec.runIndirect(shade_, queue->size, params,
-                        {{"Queue", queue->size},
-                         {"Rays", queue->rays},
-                         {"Hits", hits_},
-                         {"States", states_},
-                         {"NextQueue", next->size},
-                         {"NextRays", next->rays},
-                         {"Radiance", in.radiance},
-                         {"CutSize", cut.size},
-                         {"TreeNodes", cut.tree.nodes()},
-                         {"CutNodes", cut.nodes},
-                         {"Directions", cut.directions}});
-        rays.close(rec, next->size);
-        std::swap(queue, next);
-    }
+    rays.closest(rec, queue_, hits_, traceSeed(in.seed, in.first_sample, ~0u));
+    rec.runIndirect(shade_, queue_.size, params,
+                    {{"Queue", queue_.size},
+                     {"Rays", queue_.rays},
+                     {"Hits", hits_},
+                     {"States", states_},
+                     {"Radiance", in.radiance},
+                     {"CutSize", cut.size},
+                     {"TreeNodes", cut.tree.nodes()},
+                     {"CutNodes", cut.nodes},
+                     {"Directions", cut.directions}});
 }
 
 void GlossyStage::recordHarmonics(Recorder& rec, const InterpolateStage::Sorted& samples, const Buffer& harmonics,

@@ -33,6 +33,6 @@ public:
 
 private:
     Kernel generate_, shade_, harmonics_;
-    RayQueue queue_, next_queue_;
+    RayQueue queue_;
     Buffer hits_, states_, lobes_, shares_;
 };

@@ -64,12 +64,14 @@ bool GuideStage::helps(const SceneGpu& scene)
 GuideStage::GuideStage(const Device& device, const SceneGpu& scene, uint32_t max_paths)
     : scene_(scene), table_version_(scene.lightTableVersion()), emit_(device.kernel("guide/emit", scene.constants())),
       splat_(device.kernel("guide/splat", scene.constants())), value_(device.kernel("guide/value", scene.constants())),
-      estimate_(device.kernel("guide/estimate")), learn_(device.kernel("guide/learn")),
+      estimate_(device.kernel("guide/estimate")), fade_(device.kernel("guide/fade")),
+      learn_(device.kernel("guide/learn")),
       distribution_(device.array<gpu::GuideDistribution>("guide.distribution", 1)),
       cells_(device.array<uint32_t>("guide.cells", max_paths)),
       importance_(device.array<uint32_t>("guide.importance", gpu::kGuideBins)),
       values_(device.array<float>("guide.values", max_paths)), largest_(device.array<uint32_t>("guide.largest", 1)),
-      estimates_(device.array<gpu::GuideEstimate>("guide.estimates", gpu::kGuideTotal)), max_paths_(max_paths)
+      estimates_(device.array<gpu::GuideEstimate>("guide.estimates", gpu::kGuideTotal)),
+      roots_(device.array<float>("guide.roots", gpu::kGuideTotal)), max_paths_(max_paths)
 {
     const GuidedLights lights = groupsOf(scene.lights());
     groups_ = device.upload<gpu::GuideGroups>("guide.groups", std::span(&lights.groups, 1));
@@ -99,8 +101,10 @@ void GuideStage::reset(Recorder& rec)
 
 void GuideStage::runLearn(Recorder& rec, float memory) const
 {
-    rec.run(learn_, gpu::kGuideLearnSize, gpu::LearnParams{.memory = memory, .scale = estimateScale(max_paths_)},
-            {{"Groups", groups_}, {"Largest", largest_}, {"Estimates", estimates_}, {"Distribution", distribution_}});
+    rec.run(fade_, gpu::kGuideTotal, gpu::FadeParams{.memory = memory, .scale = estimateScale(max_paths_)},
+            {{"Largest", largest_}, {"Estimates", estimates_}, {"Roots", roots_}});
+    rec.run(learn_, gpu::kGuideLearnSize, NoParams{},
+            {{"Groups", groups_}, {"Roots", roots_}, {"Distribution", distribution_}});
 }
 
 void GuideStage::emit(Recorder& rec, const Buffer& starts, const gpu::EmitParams& params) const

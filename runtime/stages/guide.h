@@ -42,7 +42,7 @@ private:
     const SceneGpu& scene_;
     uint64_t table_version_;
     bool has_learned_ = false;
-    Kernel emit_, splat_, value_, estimate_, learn_;
-    Buffer groups_, other_lights_, distribution_, cells_, importance_, values_, largest_, estimates_;
+    Kernel emit_, splat_, value_, estimate_, fade_, learn_;
+    Buffer groups_, other_lights_, distribution_, cells_, importance_, values_, largest_, estimates_, roots_;
     uint32_t max_paths_;
 };

@@ -17,12 +17,24 @@ uint32_t tileCount(uint32_t width, uint32_t height)
 
 HistoryStage::HistoryStage(const Device& device, uint32_t width, uint32_t height, const Scratch& scratch)
     : tile_count_(tileCount(width, height)), compare_(device.kernel("history/compare")),
-      reconcile_(device.kernel("history/reconcile")), blend_(device.kernel("history/blend")),
+      judge_(device.kernel("history/judge")), reconcile_(device.kernel("history/reconcile")),
+      blend_(device.kernel("history/blend")),
       compared_(device.texelArray<gpu::PixelPairs>("history.compared", width * height, scratch)),
-      tiles_(device.array<gpu::TilePairs>("history.tiles", tile_count_)),
+      tiles_(device.array<gpu::TilePairs>("history.tiles", tile_count_, scratch)),
+      blocks_(device.array<gpu::HistoryBlock>("history.blocks", tile_count_ * gpu::kTileBlocks, scratch)),
+      followed_(device.texelArray<gpu::FollowedTerm>("history.followed",
+                                                     tile_count_ * gpu::kTileBlocks * gpu::kHistoryTerms, scratch)),
       pixels_{device.texelArray<gpu::PixelHistory>("history.pixels_a", width * height),
               device.texelArray<gpu::PixelHistory>("history.pixels_b", width * height)}
 {
+}
+
+uint64_t HistoryStage::scratchBytes(uint32_t width, uint32_t height)
+{
+    constexpr uint64_t kTileBytes =
+        sizeof(gpu::TilePairs) +
+        gpu::kTileBlocks * (sizeof(gpu::HistoryBlock) + gpu::kHistoryTerms * sizeof(gpu::FollowedTerm));
+    return uint64_t(width) * height * sizeof(gpu::PixelPairs) + tileCount(width, height) * kTileBytes;
 }
 
 void HistoryStage::record(Recorder& rec, const Input& in)
@@ -68,8 +80,16 @@ void HistoryStage::record(Recorder& rec, const Input& in)
              {"Caustics", in.light.caustics},
              {"Compared", compared_},
              {"Displacements", in.signals.displacements},
-             {"Tiles", tiles_}});
-    rec.run(reconcile_, thread_count, params,
+             {"Tiles", tiles_},
+             {"Blocks", blocks_}});
+    rec.run(judge_, thread_count, params,
+            {{"Motions", in.signals.motions},
+             {"Guides", in.signals.guides},
+             {"Compared", compared_},
+             {"Tiles", tiles_},
+             {"Blocks", blocks_},
+             {"FollowedTerms", followed_}});
+    rec.run(reconcile_, params.point_count, params,
             {{"Motions", in.signals.motions},
              {"Guides", in.signals.guides},
              {"OldGuides", in.signals.last_guides},
@@ -81,8 +101,8 @@ void HistoryStage::record(Recorder& rec, const Input& in)
              {"Indirect", in.light.indirect},
              {"Caustics", in.light.caustics},
              {"Displacements", in.signals.displacements},
-             {"Compared", compared_},
-             {"Tiles", tiles_}});
+             {"Blocks", blocks_},
+             {"FollowedTerms", followed_}});
 }
 
 double HistoryStage::rememberedShare(const Device& device, uint32_t point_count) const

@@ -6,6 +6,8 @@
 class HistoryStage
 {
 public:
+    /// Bytes of scratch memory, beside what aligning its buffers may cost.
+    static uint64_t scratchBytes(uint32_t width, uint32_t height);
     HistoryStage(const Device& device, uint32_t width, uint32_t height, const Scratch& scratch = {});
 
     struct Input
@@ -23,9 +25,11 @@ public:
 
 private:
     uint32_t tile_count_;
-    Kernel compare_, reconcile_, blend_;
+    Kernel compare_, judge_, reconcile_, blend_;
     Buffer compared_;              // gpu::PixelPairs[pixels]
     Buffer tiles_;                 // gpu::TilePairs[tile_count_]
+    Buffer blocks_;                // gpu::HistoryBlock[tile_count_ * kTileBlocks]
+    Buffer followed_;              // gpu::FollowedTerm[tile_count_ * kTileBlocks * kHistoryTerms]
     std::array<Buffer, 2> pixels_; // gpu::PixelHistory[pixels]
     uint32_t now_ = 0;
 };

@@ -28,7 +28,7 @@ public:
 
 private:
     bool has_delta_lobes_, splits_;
-    Kernel generate_, chain_;
-    RayQueue queue_, next_queue_;
+    Kernel trace_, chain_, follow_;
+    RayQueue queue_; // the rays that go on from the first vertex
     Buffer hits_, points_, diffuse_points_;
 };

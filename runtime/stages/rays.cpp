@@ -28,22 +28,34 @@ RayTally::RayTally(const Device& device)
 
 void RayTally::note(Recorder& rec, const Buffer& queue_size, bool any_hit)
 {
-    check(calls_.size() < kMaxTallied, "more than {} queues are counted", kMaxTallied);
-    rec.copy(queue_size, sizes_, sizeof(gpu::QueueSize), calls_.size() * sizeof(gpu::QueueSize));
-    calls_.push_back({.scope = std::string(rec.scopeName()), .any_hit = any_hit, .ray_count = 0});
+    check(queues_.size() < kMaxTallied, "more than {} queues are counted", kMaxTallied);
+    rec.copy(queue_size, sizes_, sizeof(gpu::QueueSize), queues_.size() * sizeof(gpu::QueueSize));
+    queues_.push_back({.scope = std::string(rec.scopeName()), .any_hit = any_hit, .ray_count = 0});
+}
+
+void RayTally::note(Recorder& rec, uint32_t ray_count)
+{
+    known_.push_back({.scope = std::string(rec.scopeName()), .any_hit = false, .ray_count = ray_count});
 }
 
 std::vector<RayTally::Entry> RayTally::entries() const
 {
-    const auto sizes = device_.download<gpu::QueueSize>(sizes_, calls_.size());
-    std::vector<Entry> entries;
-    for (size_t i = 0; i < calls_.size(); ++i)
+    const auto sizes = device_.download<gpu::QueueSize>(sizes_, queues_.size());
+    std::vector<Entry> noted = known_;
+    for (size_t i = 0; i < queues_.size(); ++i)
     {
-        auto entry = std::ranges::find_if(entries, [&](const Entry& e)
-                                          { return e.scope == calls_[i].scope && e.any_hit == calls_[i].any_hit; });
+        noted.push_back(queues_[i]);
+        noted.back().ray_count = sizes[i].count;
+    }
+    std::vector<Entry> entries;
+    for (const Entry& note : noted)
+    {
+        const auto entry = std::ranges::find_if(entries, [&](const Entry& e)
+                                                { return e.scope == note.scope && e.any_hit == note.any_hit; });
         if (entry == entries.end())
-            entry = entries.insert(entries.end(), calls_[i]);
-        entry->ray_count += sizes[i].count;
+            entries.push_back(note);
+        else
+            entry->ray_count += note.ray_count;
     }
     return entries;
 }
@@ -77,6 +89,12 @@ void RayStage::count(Recorder& rec, const Buffer& size) const
 {
     if (tally_)
         tally_->note(rec, size, false);
+}
+
+void RayStage::count(Recorder& rec, uint32_t ray_count) const
+{
+    if (tally_)
+        tally_->note(rec, ray_count);
 }
 
 void RayStage::visible(Recorder& rec, const Buffer& size, const Buffer& shadow_rays, const Buffer& radiance) const

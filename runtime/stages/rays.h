@@ -28,13 +28,15 @@ public:
         uint64_t ray_count;
     };
     void note(Recorder& rec, const Buffer& queue_size, bool any_hit);
-    /// Everything noted and submitted so far, in order of first appearance; waits for the device.
+    void note(Recorder& rec, uint32_t ray_count);
+    /// Everything noted and submitted so far, known counts first, else in order of first appearance; waits for the device.
     std::vector<Entry> entries() const;
 
 private:
     const Device& device_;
-    Buffer sizes_; // gpu::QueueSize, one for each of calls_
-    std::vector<Entry> calls_;
+    Buffer sizes_; // gpu::QueueSize, one for each of queues_
+    std::vector<Entry> queues_;
+    std::vector<Entry> known_; // by their count
 };
 
 class RayStage
@@ -55,8 +57,9 @@ public:
     /// @param shadow_rays gpu::ShadowRay[], @param radiance vec3[]
     void visible(Recorder& rec, const Buffer& size, const Buffer& shadow_rays, const Buffer& radiance) const;
 
-    /// Notes rays that another stage has traced itself. @param size gpu::QueueSize: their count
+    /// Notes rays that another stage traces itself. @param size gpu::QueueSize: their count
     void count(Recorder& rec, const Buffer& size) const;
+    void count(Recorder& rec, uint32_t ray_count) const;
     /// Notes every queue that is traced from now on; null ends that.
     void countInto(RayTally* tally) { tally_ = tally; }
 

@@ -6,11 +6,11 @@
 
 GPU_NAMESPACE_BEGIN
 
-struct GatherState // of a ray between two links of its specular chain
+struct GatherState // of a path between two vertices
 {
     vec3 throughput; // of a sample's ray at first: the cosine's density over its own
     uint medium;
-    uint specular; // delta events so far
+    uint specular; // mirrors and glass so far
 };
 GPU_SIZE(GatherState, 20);
 
@@ -35,14 +35,13 @@ struct GatherParams
 {
     uint ray_count; // of a sample or pixel
     uint seed;
-    uint depth; // delta events before this one
-    uint depth_limit;
+    uint depth_limit;  // most specular events of a path
     uint mode;         // kCut*
     uint photon_count; // k, in mode kCutKnn
     float radius;      // of density estimation at most, in mode kCutKnn: of the distance from the viewer
     uint leg_count;    // for aiming: all legs, or 0
 };
-GPU_SIZE(GatherParams, 32);
+GPU_SIZE(GatherParams, 28);
 
 GPU_NAMESPACE_END
 #endif

@@ -3,7 +3,8 @@
 #extension GL_EXT_scalar_block_layout : require
 #include "shaders/gather/gather.h"
 
-// Reads the illumination cut where gathering rays end. One thread per ray of the queue.
+// Reads the illumination cut where gathering rays end. What a mirror or glass sends on is followed at once: few rays, and a queue a
+// vertex would cost more than the threads that wait. One thread per ray of the queue.
 
 layout(local_size_x = kRaysGroupSize) in;
 layout(push_constant, scalar) uniform Params { GatherParams params; };
@@ -11,14 +12,12 @@ layout(push_constant, scalar) uniform Params { GatherParams params; };
 layout(set = 1, binding = 0, scalar) readonly buffer Queue { QueueSize queue; };
 layout(set = 1, binding = 1) uniform usamplerBuffer Rays;
 layout(set = 1, binding = 2) uniform usamplerBuffer Hits;
-layout(set = 1, binding = 3, scalar) buffer States { GatherState states[]; };
-layout(set = 1, binding = 4, scalar) buffer NextQueue { QueueSize next_queue; };
-layout(set = 1, binding = 5, scalar) writeonly buffer NextRays { Ray next_rays[]; };
-layout(set = 1, binding = 6, scalar) buffer GatheredBlock { Gathered gathered[]; };
-layout(set = 1, binding = 7, scalar) readonly buffer CutSize { QueueSize cut_size; };
-layout(set = 1, binding = 8) uniform usamplerBuffer TreeNodes;
-layout(set = 1, binding = 9) uniform usamplerBuffer CutNodes;
-layout(set = 1, binding = 10, scalar) readonly buffer Directions { uint directions[]; };
+layout(set = 1, binding = 3, scalar) readonly buffer States { GatherState states[]; };
+layout(set = 1, binding = 4, scalar) writeonly buffer GatheredBlock { Gathered gathered[]; };
+layout(set = 1, binding = 5, scalar) readonly buffer CutSize { QueueSize cut_size; };
+layout(set = 1, binding = 6) uniform usamplerBuffer TreeNodes;
+layout(set = 1, binding = 7) uniform usamplerBuffer CutNodes;
+layout(set = 1, binding = 8, scalar) readonly buffer Directions { uint directions[]; };
 #include "shaders/lib/hit.glsl"
 #include "shaders/lib/ray.glsl"
 #include "shaders/lib/cut_light.glsl"

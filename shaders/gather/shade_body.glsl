@@ -9,17 +9,18 @@ void main()
     GatherState state = GatherState(vec3(0.0), kNone, 0u);
     if (hit.slot != kNone) // a ray that gathers for nothing has none
         state = states[ray.path];
-    float weight = state.throughput.x;
-    uint sample_ = ray.path / params.ray_count;
-    Sampler sampler_ = Sampler(hash(params.seed, sample_), ray.path - sample_ * params.ray_count, 1u + params.depth);
-    GatherVertex vertex = shadeGatherVertex(ray, hit, state, sampler_, false);
-    bool goes_on = vertex.goes_on && params.depth < params.depth_limit;
-    if (params.depth == 0u)
-        gathered[ray.path] = Gathered(vertex.radiance, hit.slot == kNone ? 0.0 : weight / max(hit.t, 1e-6));
-    else
-        gathered[ray.path].radiance += vertex.radiance;
-    if (!goes_on)
-        return;
-    states[ray.path] = state;
-    next_rays[atomicAdd(next_queue.count, 1u)] = vertex.next;
+    Gathered sum = Gathered(vec3(0.0), hit.slot == kNone ? 0.0 : state.throughput.x / max(hit.t, 1e-6));
+    uint path = ray.path, depth = 0u;
+    Passage passage = kNoPassage;
+    for (;;)
+    {
+        GatherVertex vertex = shadeGatherVertex(ray, hit, state, passage, gatherSampler(params, path, depth), false);
+        sum.radiance += vertex.radiance;
+        if (!vertex.goes_on || depth >= params.depth_limit)
+            break;
+        ray = vertex.next;
+        ++depth;
+        hit = closestHit(ray.origin, ray.direction, kRayStart, ray.t_max, hash(hash(params.seed, depth), path));
+    }
+    gathered[path] = sum;
 }

@@ -11,13 +11,11 @@ layout(push_constant, scalar) uniform Params { GatherParams params; };
 layout(set = 1, binding = 0, scalar) readonly buffer Queue { QueueSize queue; };
 layout(set = 1, binding = 1) uniform usamplerBuffer Rays;
 layout(set = 1, binding = 2) uniform usamplerBuffer Hits;
-layout(set = 1, binding = 3, scalar) buffer States { GatherState states[]; };
-layout(set = 1, binding = 4, scalar) buffer NextQueue { QueueSize next_queue; };
-layout(set = 1, binding = 5, scalar) writeonly buffer NextRays { Ray next_rays[]; };
-layout(set = 1, binding = 6, scalar) buffer GatheredBlock { Gathered gathered[]; };
-layout(set = 1, binding = 7, scalar) readonly buffer Size { QueueSize size; };
-layout(set = 1, binding = 8) uniform usamplerBuffer TreeNodes;
-layout(set = 1, binding = 9) uniform usamplerBuffer Photons;
+layout(set = 1, binding = 3, scalar) readonly buffer States { GatherState states[]; };
+layout(set = 1, binding = 4, scalar) writeonly buffer GatheredBlock { Gathered gathered[]; };
+layout(set = 1, binding = 5, scalar) readonly buffer Size { QueueSize size; };
+layout(set = 1, binding = 6) uniform usamplerBuffer TreeNodes;
+layout(set = 1, binding = 7) uniform usamplerBuffer Photons;
 #include "shaders/lib/hit.glsl"
 #include "shaders/lib/ray.glsl"
 #include "shaders/lib/density.glsl"

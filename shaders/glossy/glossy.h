@@ -11,12 +11,11 @@ struct GlossyParams
     uint width;        // of the picture, pixels
     uint first_sample; // index of the pixel's sample
     uint seed;
-    uint depth; // delta events before this one
-    uint depth_limit;
+    uint depth_limit;         // most specular events of a path
     uint shared_;             // 1: Shares holds the fraction of the light that is there already
     float roulette_threshold; // Russian-roulette threshold: from here on every pixel sends its ray
 };
-GPU_SIZE(GlossyParams, 32);
+GPU_SIZE(GlossyParams, 28);
 
 GPU_NAMESPACE_END
 #endif

@@ -3,7 +3,8 @@
 #extension GL_EXT_scalar_block_layout : require
 #include "shaders/glossy/glossy.h"
 
-// Reads the illumination cut where glossy rays end. One thread per ray of the queue, one ray a pixel at most.
+// Reads the illumination cut where glossy rays end, and follows at once what mirrors and glass send on. One thread per ray of the
+// queue, one ray a pixel at most.
 
 layout(local_size_x = kRaysGroupSize) in;
 layout(push_constant, scalar) uniform Params { GlossyParams params; };
@@ -11,14 +12,12 @@ layout(push_constant, scalar) uniform Params { GlossyParams params; };
 layout(set = 1, binding = 0, scalar) readonly buffer Queue { QueueSize queue; };
 layout(set = 1, binding = 1) uniform usamplerBuffer Rays;
 layout(set = 1, binding = 2) uniform usamplerBuffer Hits;
-layout(set = 1, binding = 3, scalar) buffer States { GatherState states[]; };
-layout(set = 1, binding = 4, scalar) buffer NextQueue { QueueSize next_queue; };
-layout(set = 1, binding = 5, scalar) writeonly buffer NextRays { Ray next_rays[]; };
-layout(set = 1, binding = 6, scalar) buffer Radiance { vec3 radiance[]; };
-layout(set = 1, binding = 7, scalar) readonly buffer CutSize { QueueSize cut_size; };
-layout(set = 1, binding = 8) uniform usamplerBuffer TreeNodes;
-layout(set = 1, binding = 9) uniform usamplerBuffer CutNodes;
-layout(set = 1, binding = 10, scalar) readonly buffer Directions { uint directions[]; };
+layout(set = 1, binding = 3, scalar) readonly buffer States { GatherState states[]; };
+layout(set = 1, binding = 4, scalar) buffer Radiance { vec3 radiance[]; };
+layout(set = 1, binding = 5, scalar) readonly buffer CutSize { QueueSize cut_size; };
+layout(set = 1, binding = 6) uniform usamplerBuffer TreeNodes;
+layout(set = 1, binding = 7) uniform usamplerBuffer CutNodes;
+layout(set = 1, binding = 8, scalar) readonly buffer Directions { uint directions[]; };
 #include "shaders/lib/hit.glsl"
 #include "shaders/lib/ray.glsl"
 #include "shaders/lib/cut_light.glsl"
@@ -34,12 +33,20 @@ void main()
     Ray ray = loadRay(i);
     Hit hit = loadHit(i);
     GatherState state = states[ray.path];
-    Sampler sampler_ = Sampler(hash(params.seed, ray.path), params.first_sample, params.depth);
-    GatherVertex vertex = shadeGatherVertex(ray, hit, state, sampler_, true);
-    if (vertex.radiance != vec3(0.0))
-        radiance[ray.path] += vertex.radiance;
-    if (!vertex.goes_on || params.depth >= params.depth_limit)
-        return;
-    states[ray.path] = state;
-    next_rays[atomicAdd(next_queue.count, 1u)] = vertex.next;
+    vec3 sum = vec3(0.0);
+    uint path = ray.path, depth = 0u;
+    Passage passage = kNoPassage;
+    for (;;)
+    {
+        Sampler sampler_ = Sampler(hash(params.seed, path), params.first_sample, depth * kGatherDimensions);
+        GatherVertex vertex = shadeGatherVertex(ray, hit, state, passage, sampler_, true);
+        sum += vertex.radiance;
+        if (!vertex.goes_on || depth >= params.depth_limit)
+            break;
+        ray = vertex.next;
+        ++depth;
+        hit = closestHit(ray.origin, ray.direction, kRayStart, ray.t_max, hash(hash(params.seed, ~depth), path));
+    }
+    if (sum != vec3(0.0))
+        radiance[path] += sum;
 }

@@ -56,12 +56,12 @@ struct EstimateParams
 };
 GPU_SIZE(EstimateParams, 4);
 
-struct LearnParams
+struct FadeParams
 {
     float memory; // weight of what was learned before
     float scale;  // of the fixed-point estimates
 };
-GPU_SIZE(LearnParams, 8);
+GPU_SIZE(FadeParams, 8);
 
 GPU_NAMESPACE_END
 #endif

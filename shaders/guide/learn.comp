@@ -5,17 +5,15 @@
 #include "shaders/guide/guide.h"
 
 // Computes the emission distribution of the next photons: cells in proportion to the root of the mean square of what their paths
-// give the picture, half of it spread over the cells around. A cell that a window's edge crosses is hit by few paths, which are very
-// bright until it is learned; beside a bright cell it is expected to be one. One group: each thread takes a run of cells of one
-// group, then runs add up in order.
+// give the picture (guide/fade.comp), half of it spread over the cells around. A cell that a window's edge crosses is hit by few
+// paths, which are very bright until it is learned; beside a bright cell it is expected to be one. One group: each thread takes a
+// run of cells of one group, then runs add up in order.
 
 layout(local_size_x = kGuideLearnSize) in;
-layout(push_constant, scalar) uniform Params { LearnParams params; };
 
 layout(set = 1, binding = 0, scalar) readonly buffer Groups { GuideGroups groups; };
-layout(set = 1, binding = 1, scalar) readonly buffer Largest { float largest; }; // of the values that estimates are sums of
-layout(set = 1, binding = 2, scalar) coherent buffer Estimates { GuideEstimate estimates[]; };
-layout(set = 1, binding = 3, scalar) writeonly buffer Distribution { GuideDistribution distribution; };
+layout(set = 1, binding = 1, scalar) readonly buffer Roots { float roots[]; }; // of the cells' estimates
+layout(set = 1, binding = 2, scalar) writeonly buffer Distribution { GuideDistribution distribution; };
 
 const uint kRun = kGuideTotal / kGuideLearnSize;    // cells
 const uint kGroupRuns = kGuideCells / kRun;
@@ -29,16 +27,10 @@ float sumOfRuns(uint first, uint end)
     return sum;
 }
 
-void update(uint i)
-{
-    float now = (float(estimates[i].high) * 4294967296.0 + float(estimates[i].low)) / params.scale * square(largest);
-    estimates[i] = GuideEstimate(0u, 0u, params.memory * estimates[i].before + now);
-}
-
 /// The root of the estimate; of a light with places of its own, half of it from the 3 x 3 cells around by 1 2 1.
 float target(uint i)
 {
-    float own = sqrt(estimates[i].before);
+    float own = roots[i];
     uint group = i / kGuideCells;
     if (group >= kGuideInfiniteLights)
         return own;
@@ -48,7 +40,7 @@ float target(uint i)
         for (int x = max(at.x - 1, 0); x <= min(at.x + 1, int(kGuideSide) - 1); ++x)
         {
             float weight = (x == at.x ? 2.0 : 1.0) * (y == at.y ? 2.0 : 1.0) / 16.0;
-            around += weight * sqrt(estimates[group * kGuideCells + uint(y) * kGuideSide + uint(x)].before);
+            around += weight * roots[group * kGuideCells + uint(y) * kGuideSide + uint(x)];
         }
     return mix(own, around, kGuideSpread);
 }
@@ -56,10 +48,6 @@ float target(uint i)
 void main()
 {
     uint run = gl_LocalInvocationID.x, first = run * kRun, group = run / kGroupRuns;
-    for (uint i = first; i < first + kRun; ++i)
-        update(i);
-    memoryBarrierBuffer();
-    barrier();
     float own = 0.0, targets[kRun];
     for (uint i = 0u; i < kRun; ++i)
     {

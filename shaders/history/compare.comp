@@ -6,7 +6,8 @@
 #include "shaders/lib/signal.glsl"
 
 // Where light has changed since the last frame: what each pixel shows beside what its surface showed before, for its
-// surroundings to compare, and sums of that over tiles, for what is farther away. One thread per pixel, one group per tile.
+// surroundings to compare, and sums of that over tiles, for what is farther away. Of each block of 2 x 2 pixels one is picked for
+// history/judge.comp. One thread per pixel, one group per tile.
 
 layout(local_size_x = kHistoryTileSize) in;
 layout(push_constant, scalar) uniform Params { HistoryParams params; };
@@ -23,16 +24,17 @@ layout(set = 1, binding = 8, scalar) readonly buffer Caustics { vec3 caustics[];
 layout(set = 1, binding = 9, scalar) writeonly buffer Compared { PixelPairs pairs[]; };
 layout(set = 1, binding = 10, scalar) readonly buffer Displacements { vec3 displacements[]; };
 layout(set = 1, binding = 11, scalar) writeonly buffer Tiles { TilePairs tiles[]; };
+layout(set = 1, binding = 12, scalar) writeonly buffer Blocks { HistoryBlock blocks[]; };
 
 #include "shaders/lib/diffuse_point.glsl"
 #include "shaders/lib/history_tile.glsl"
 #include "shaders/lib/recall.glsl"
 
-const uint kTerms = 4u;
 shared uint chosen;                       // the thread whose surface the tile's sums are of; its distance from the centre above
 shared SurfaceGuide surfaces[kHistoryTileSize];
-shared LightPair shown[kHistoryTileSize][kTerms];
-shared TermPairs rows[kHistoryTileSide][kTerms];
+shared LightPair shown[kHistoryTileSize][kHistoryTerms];
+shared TermPairs rows[kHistoryTileSide][kHistoryTerms];
+shared uint firsts[kTileBlocks]; // which of a block's four pixels is the first that shows a surface; 4: none does
 
 LightPair pairOf(uvec4 bits, Memory past)
 {
@@ -40,10 +42,13 @@ LightPair pairOf(uvec4 bits, Memory past)
     return s.lobe == 0.0 ? LightPair(uvec2(0u)) : packPair(lightOver(s.light, s.reflectance, past), past);
 }
 
+uint halves(Memory past) { return packHalf2x16(vec2(past.frames, past.spread)); }
+
 /// @return whether it has a surface
-bool comparePixel(uint pixel, uint thread)
+bool comparePixel(uint pixel, uint thread, out uvec4 memories)
 {
     Past past = recall(pixel);
+    memories = uvec4(halves(past.direct), halves(past.indirect), halves(past.glossy), halves(past.caustics));
     vec3 reflectance = max(loadDiffusePoint(pixel).reflectance, vec3(kLeastReflectance));
     PixelPairs p = PixelPairs(pairOf(texelFetch(DirectSignals, int(pixel)), past.direct),
                               packPair(lightOver(indirect[pixel], reflectance, past.indirect), past.indirect),
@@ -51,7 +56,7 @@ bool comparePixel(uint pixel, uint thread)
                               packPair(lightOver(caustics[pixel], reflectance, past.caustics), past.caustics));
     pairs[pixel] = p;
     surfaces[thread] = loadGuide(pixel);
-    shown[thread] = LightPair[kTerms](p.direct, p.indirect, p.glossy, p.caustics);
+    shown[thread] = LightPair[kHistoryTerms](p.direct, p.indirect, p.glossy, p.caustics);
     return motions[pixel].distance < kInfinity;
 }
 
@@ -78,16 +83,25 @@ void main()
     uint thread = gl_LocalInvocationID.x;
     ivec2 here = tileCorner() + inTile(thread);
     uint pixel = uint(here.y) * params.width + uint(here.x);
+    ivec2 in_tile = inTile(thread);
+    uint block = blockInTile(in_tile), in_block = uint(in_tile.y & 1) * 2u + uint(in_tile.x & 1);
     if (thread == 0u)
         chosen = ~0u;
+    if (thread < kTileBlocks)
+        firsts[thread] = 4u;
     barrier();
-    shown[thread] = LightPair[kTerms](LightPair(uvec2(0u)), LightPair(uvec2(0u)), LightPair(uvec2(0u)), LightPair(uvec2(0u)));
-    if (all(lessThan(here, pictureSize())) && comparePixel(pixel, thread))
+    shown[thread] = LightPair[kHistoryTerms](LightPair(uvec2(0u)), LightPair(uvec2(0u)), LightPair(uvec2(0u)), LightPair(uvec2(0u)));
+    uvec4 memories = uvec4(0u);
+    if (all(lessThan(here, pictureSize())) && comparePixel(pixel, thread, memories))
     {
-        ivec2 off = 2 * inTile(thread) - int(kHistoryTileSide) + 1; // from the centre, halves of a pixel
+        ivec2 off = 2 * in_tile - int(kHistoryTileSide) + 1; // from the centre, halves of a pixel
         atomicMin(chosen, uint(off.x * off.x + off.y * off.y) * kHistoryTileSize + thread);
+        atomicMin(firsts[block], in_block);
     }
     barrier();
+    bool none = firsts[block] == 4u;
+    if (in_block == (none ? 0u : firsts[block]))
+        blocks[gl_WorkGroupID.x * kTileBlocks + block] = HistoryBlock(none ? kNoPixel : pixel, memories);
     uint tile = gl_WorkGroupID.x;
     if (chosen == ~0u) // sky
     {
@@ -97,10 +111,10 @@ void main()
     }
     uint center = chosen % kHistoryTileSize;
     ivec2 at = tileCorner() + inTile(center);
-    if (thread < kHistoryTileSide * kTerms)
-        sumRow(thread / kTerms, thread % kTerms, surfaces[center], footprintAt(motions[at.y * int(params.width) + at.x]));
+    if (thread < kHistoryTileSide * kHistoryTerms)
+        sumRow(thread / kHistoryTerms, thread % kHistoryTerms, surfaces[center], footprintAt(motions[at.y * int(params.width) + at.x]));
     barrier();
-    if (thread >= kTerms)
+    if (thread >= kHistoryTerms)
         return;
     TermPairs sum = rows[0][thread];
     for (uint row = 1u; row < kHistoryTileSide; ++row)

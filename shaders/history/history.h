@@ -37,9 +37,31 @@ struct PixelPairs // by term; two texels
 };
 GPU_SIZE(PixelPairs, 32);
 
+GPU_CONST uint kHistoryTerms = 4u; // in the order of PixelHistory
+
 // Tiles of the picture, of a group of threads each, where light has changed.
 GPU_CONST uint kHistoryTileSide = 8u; // pixels
 GPU_CONST uint kHistoryTileSize = 64u;
+GPU_CONST uint kTileBlocksAlong = 4u; // blocks of 2 x 2 pixels along a side
+GPU_CONST uint kTileBlocks = 16u;
+
+// One pixel of each block is compared with its surroundings; those of its block that show the same surface follow it. A
+// thread works on one term of one block, so that a tile takes as many threads as it has pixels.
+GPU_CONST uint kNoPixel = 0xFFFFFFFFu;
+
+struct HistoryBlock // tile after tile; within one row by row
+{
+    uint pixel;     // of the picture, that is compared: the first that shows a surface; kNoPixel: none does
+    uvec4 memories; // by term, what it remembers: frames and spread, halves
+};
+GPU_SIZE(HistoryBlock, 20);
+
+struct FollowedTerm // what becomes of the past of a block's pixels, by block and term: light -> gain x light + more
+{
+    uvec2 gain; // halves: gain, and the factor of the number of frames; that is less than 0 where nothing is known
+    HistoryLight more;
+};
+GPU_SIZE(FollowedTerm, 16);
 
 struct TermPairs // sums over pixels of one surface
 {

@@ -5,10 +5,10 @@
 #include "shaders/lib/light_pair.glsl"
 #include "shaders/lib/signal.glsl"
 
-// As history/blend.comp, where light has changed since the last frame: the past first follows what its surroundings show
-// (lib/reconcile.glsl). One thread per pixel, one group per tile, so that pixels share what they read of their surroundings.
+// As history/blend.comp, where light has changed since the last frame: the past first follows what its surroundings show, as
+// history/judge.comp found. One thread per pixel.
 
-layout(local_size_x = kHistoryTileSize) in;
+layout(local_size_x = kRaysGroupSize) in;
 layout(push_constant, scalar) uniform Params { HistoryParams params; };
 
 layout(set = 1, binding = 0, scalar) readonly buffer Motions { Motion motions[]; };
@@ -22,34 +22,63 @@ layout(set = 1, binding = 7) uniform usamplerBuffer DiffusePoints;
 layout(set = 1, binding = 8, scalar) buffer Indirect { vec3 indirect[]; };
 layout(set = 1, binding = 9, scalar) buffer Caustics { vec3 caustics[]; };
 layout(set = 1, binding = 10, scalar) readonly buffer Displacements { vec3 displacements[]; };
-layout(set = 1, binding = 11) uniform usamplerBuffer Compared; // PixelPairs
-layout(set = 1, binding = 12, scalar) readonly buffer Tiles { TilePairs tiles[]; };
+layout(set = 1, binding = 11, scalar) readonly buffer Blocks { HistoryBlock blocks[]; };
+layout(set = 1, binding = 12) uniform usamplerBuffer FollowedTerms;
 
 #include "shaders/lib/history_tile.glsl"
 #include "shaders/lib/remember.glsl"
 #include "shaders/lib/reconcile.glsl"
 
+// Frames that a past keeps of which nothing around tells whether it still holds: it lags no longer.
+const float kUnjudged = 4.0;
+
+/// The block whose pixel shows the same surface as this one: its own, or one beside it. @return kNoPixel: none
+uint blockLike(uint pixel, ivec2 here)
+{
+    SurfaceGuide guide = loadGuide(pixel);
+    vec3 normal = smoothNormal(guide.normals);
+    float footprint = footprintAt(motions[pixel]);
+    ivec2 size = pictureSize();
+    uint found = kNoPixel;
+    for (int k = 0;;) // tests at its end: see lib/bvh.glsl why
+    {
+        ivec2 step_ = k == 0 ? ivec2(0) : (1 - (k & 1) * 2) * (k < 3 ? ivec2(2, 0) : ivec2(0, 2));
+        ivec2 place = clamp(here + step_, ivec2(0), size - 1), tile = place / int(kHistoryTileSide);
+        uint block = uint(tile.y * tileCounts().x + tile.x) * kTileBlocks + blockInTile(place % int(kHistoryTileSide));
+        uint other = blocks[block].pixel;
+        if (other != kNoPixel && sameSurface(guide, normal, texelFetch(Guides, int(other)), footprint))
+            found = block;
+        if (++k == 5 || found != kNoPixel)
+            break;
+    }
+    return found;
+}
+
+void reconcileMemory(inout Memory past, uint block, uint term)
+{
+    Followed followed = kUnknown;
+    if (block != kNoPixel)
+        followed = unpackFollowed(texelFetch(FollowedTerms, int(block * kHistoryTerms + term)));
+    if (followed.frames < 0.0)
+    {
+        past.light *= clamp(vec3(1.0), params.least, params.most); // so much is sure
+        past.frames = min(past.frames, kUnjudged);
+        return;
+    }
+    past.light = followed.gain * past.light + followed.more;
+    past.frames *= followed.frames;
+}
+
 void main()
 {
-    uint thread = gl_LocalInvocationID.x;
-    int quad = int(thread) % kQuads, part = int(thread) / kQuads;
-    ivec2 in_tile = inTile(thread), here = tileCorner() + in_tile;
-    bool inside = all(lessThan(here, pictureSize()));
-    uint pixel = uint(here.y) * params.width + uint(here.x);
-    loadSurroundings();
-    Past past = Past(kNoMemory, kNoMemory, kNoMemory, kNoMemory);
-    if (inside)
-        past = recall(pixel);
-    noteMemory(thread, past);
-    if (part == 0)
-        pickPixel(quad);
-    barrier();
-    findPlaces(quad, part);
-    barrier();
-    compareTerm(quad, uint(part));
-    barrier();
-    if (!inside)
+    uint pixel = gl_GlobalInvocationID.x;
+    if (pixel >= params.point_count)
         return;
-    reconcile(past, pixel, in_tile);
+    Past past = recall(pixel);
+    uint row = quotient(pixel, params.width), block = blockLike(pixel, ivec2(pixel - row * params.width, row));
+    reconcileMemory(past.direct, block, 0u);
+    reconcileMemory(past.indirect, block, 1u);
+    reconcileMemory(past.glossy, block, 2u);
+    reconcileMemory(past.caustics, block, 3u);
     rememberPixel(pixel, past);
 }

@@ -17,13 +17,22 @@ Incident nearestCutLight(vec3 x, vec3 n, float radius2)
     return Incident(irradiance, unpackNormal(directions[nearest]), irradiance);
 }
 
-/// Whether the node is visible from everywhere on its disc.
-bool isSeenByAll(CutNode node) { return isClear(node) || eyeHeight(node) == 0.0; }
+// What lies so far behind a node's disc, in supports, or faces so far away from where it does, may be hidden by the disc's own surface:
+// where a sheet meets a floor at 45 degrees, sunlight on the one side shone along the edge on the other (a room 2 % too bright).
+const float kBehindDisc = 0.02, kFacingDisc = 0.95;
+
+/// Whether the node is surely visible from the surface at x: from everywhere on its disc, of which that is a part.
+bool isSurelySeen(CutNode node, vec3 x, vec3 n)
+{
+    vec3 normal = cutNormal(node);
+    bool on_disc = dot(x - node.center, normal) >= -kBehindDisc * node.support && dot(n, normal) >= kFacingDisc;
+    return (isClear(node) && on_disc) || eyeHeight(node) == 0.0;
+}
 
 /// Whether the node's eye is visible from the surface at x. Translucent surfaces stop the ray as they stop the probe rays.
 bool isSeen(CutNode node, vec3 x, vec3 n, uint random)
 {
-    if (isSeenByAll(node))
+    if (isSurelySeen(node, x, n))
         return true;
     float height = eyeHeight(node);
     vec3 origin = offsetOrigin(x, n);
@@ -57,7 +66,7 @@ Incident cutLight(vec3 x, vec3 n, uint random)
                     CutNode node = loadCutNode(i);
                     vec3 irradiance = cutWeight(node, x, n) * node.irradiance;
                     sum += irradiance;
-                    is_sure = is_sure && (irradiance == vec3(0.0) || isSeenByAll(node));
+                    is_sure = is_sure && (irradiance == vec3(0.0) || isSurelySeen(node, x, n));
                     offer(reservoir, luminance(irradiance), i);
                 }
                 if (++i == end)

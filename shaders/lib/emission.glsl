@@ -77,21 +77,32 @@ float aimedOriginPdf(vec3 origin, vec3 direction)
 vec3 sceneCenter() { return 0.5 * (scene.bounds_min + scene.bounds_max); }
 float sceneRadius() { return 0.5 * length(scene.bounds_max - scene.bounds_min) * 1.0001; }
 
-/// Where along a parallel beam a photon starts, in front of the whole scene, and the density of that per square metre.
+/// Photons of a beam start no farther from the place that they are aimed at than this many times what that is from the viewer: the
+/// rounding of their start is then a thousandth of it. Geometry beyond casts no shadow on them. 2^14 * 2^-24 = 1/1024.
+const float kFarthestStart = 16384.0;
+
+/// The start of a photon of a parallel beam through `place`: in front of the whole scene, as far as rounding allows.
+vec3 beamStart(vec3 place, vec3 direction)
+{
+    float before = sceneRadius() - dot(sceneCenter() - place, direction);
+    float farthest = kFarthestStart * (view_scale.distance + distance(place, view_scale.focus));
+    return place - min(before, farthest) * direction;
+}
+
+/// Where along a parallel beam a photon starts, and the density of that per square metre.
 vec3 infiniteOrigin(vec3 direction, float aim, bool aimed, uint target, vec2 u, out float pdf)
 {
     vec3 center = aimed ? caustic_targets[target].center : sceneCenter();
     float radius = aimed ? caustic_targets[target].radius : sceneRadius();
     mat3 frame = frameAround(direction);
     vec2 disc = uniformDisc(u) * radius;
-    vec3 origin = center + frame * vec3(disc, 0.0);
-    origin += direction * (dot(sceneCenter() - origin, direction) - sceneRadius());
-    vec3 off_center = cross(sceneCenter() - origin, direction);
+    vec3 place = center + frame * vec3(disc, 0.0);
+    vec3 off_center = cross(sceneCenter() - place, direction);
     bool inside = dot(off_center, off_center) <= square(sceneRadius());
     pdf = inside ? (1.0 - aim) / (kPi * square(sceneRadius())) : 0.0;
     if (aim > 0.0)
-        pdf += aim * aimedOriginPdf(origin, direction);
-    return origin;
+        pdf += aim * aimedOriginPdf(place, direction);
+    return beamStart(place, direction);
 }
 
 /// The same near the viewer more than elsewhere: density falls with the distance from the view's focus, each way, so that the
@@ -104,8 +115,7 @@ vec3 focusedOrigin(vec3 direction, vec2 u, out float pdf)
     vec2 low = asinh(center - radius), high = asinh(center + radius), t = mix(low, high, u);
     vec2 place = sinh(t) * view_scale.distance, stretch = cosh(t) * view_scale.distance * (high - low);
     pdf = 1.0 / (stretch.x * stretch.y);
-    vec3 origin = view_scale.focus + frame * vec3(place, 0.0);
-    return origin + direction * (dot(sceneCenter() - origin, direction) - sceneRadius());
+    return beamStart(view_scale.focus + frame * vec3(place, 0.0), direction);
 }
 
 Emission emitPoint(Light light, float aim, bool aimed, uint target, vec2 u)

@@ -13,6 +13,7 @@ struct Memory
 };
 
 const Memory kNoMemory = Memory(vec3(0.0), 0.0, 1.0);
+const uint kKnownFrames = 4u; // from this many frames on, the error is estimated from the history instead of from neighbours
 const float kMantissa = 16383.0;
 const float kSpreadSteps = 24.0; // for a factor of two: up to 2^10.6, in steps of 3 %
 

@@ -1,4 +1,4 @@
-// Pixels of a group that works on one tile of the picture. The kernel declares `HistoryParams params` before it includes this.
+// Tiles of the picture, each the work of one group. The kernel declares `HistoryParams params` before it includes this.
 // Functions only.
 #ifndef LIB_HISTORY_TILE_GLSL
 #define LIB_HISTORY_TILE_GLSL
@@ -15,5 +15,7 @@ ivec2 tilePlace()
 /// Its first pixel.
 ivec2 tileCorner() { return tilePlace() * int(kHistoryTileSide); }
 ivec2 inTile(uint thread) { return ivec2(thread % kHistoryTileSide, thread / kHistoryTileSide); }
+/// The block of a tile that a pixel of the tile is in.
+uint blockInTile(ivec2 in_tile) { return uint(in_tile.y / 2) * kTileBlocksAlong + uint(in_tile.x / 2); }
 
 #endif

@@ -20,10 +20,10 @@ uint packShared(vec3 light)
     return parts.x | parts.y << 8 | parts.z << 16 | uint(exponent + 128) << 24;
 }
 
-/// Of what packShared() gave, whose exponent is never 0.
+/// 0 of 0, which packShared() never gives: its exponent is not 0.
 vec3 unpackShared(uint word)
 {
-    float unit = uintBitsToFloat(((word >> 24) - 1u) << 23); // 2^(exponent - 128)
+    float unit = word == 0u ? 0.0 : uintBitsToFloat(((word >> 24) - 1u) << 23); // 2^(exponent - 128)
     return vec3(word & 255u, word >> 8 & 255u, word >> 16 & 255u) * (unit * (1.0 / 255.0));
 }
 
@@ -35,13 +35,11 @@ LightPair packPair(vec3 fresh, Memory past)
 
 void addPair(inout Pairs sum, uvec2 words)
 {
-    if (words.x == 0u)
-        return;
     vec3 fresh = unpackShared(words.x), past = unpackShared(words.y);
     sum.fresh += fresh;
     sum.past += past;
     sum.products += vec3(dot(fresh, fresh), dot(fresh, past), dot(past, past));
-    sum.count += 1.0;
+    sum.count += words.x == 0u ? 0.0 : 1.0;
 }
 
 #endif

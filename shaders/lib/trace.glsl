@@ -12,16 +12,32 @@
 // a second one around it, which threads enter together. Neither starts again from the root: rays cross any number of layers.
 // (Software Vulkan ends all loops of a thread after 65535 rounds together: some thousand layers are within that.)
 
-/// Whether the ray meets a surface with alpha: by the probability of its coverage, one decision a triangle, whatever the
-/// order of the tests.
-bool meetsAlpha(Hit hit, uint triangle, uint seed)
+struct AlphaSeed
 {
-    return toUnitFloat(hash(seed, triangle)) < surfaceCoverage(hit.slot, hit.barycentrics);
+    uint seed;
+    ivec2 pixel; // of a camera ray, whose seed is that of all pixels; else 0
+};
+
+/// Thresholds of neighbouring pixels: any few of them are spread evenly (R2 sequence, Roberts 2018). @param variant one of 8
+float dithered(ivec2 pixel, uint variant)
+{
+    vec2 at = vec2((variant & 1u) != 0u ? pixel.yx : pixel);
+    at *= vec2((variant & 2u) != 0u ? -1.0 : 1.0, (variant & 4u) != 0u ? -1.0 : 1.0);
+    return fract(dot(at, vec2(0.7548776662, 0.5698402910)));
+}
+
+/// Whether the ray meets a surface with alpha: by the probability of its coverage, one decision a triangle, whatever the
+/// order of the tests. Of camera rays as many of a few neighbours meet it as its coverage says, where chance alone would give each
+/// frame of a curtain grains. Layers have patterns of their own: a ray meets one whether or not it met the other.
+bool meetsAlpha(Hit hit, uint triangle, AlphaSeed seed)
+{
+    uint random = hash(seed.seed, triangle);
+    return fract(toUnitFloat(random) + dithered(seed.pixel, random)) < surfaceCoverage(hit.slot, hit.barycentrics);
 }
 
 /// The nearest of those triangles with alpha that the ray meets, if it is nearer than `hit`.
 /// @param slots of a leaf, a bit each from slot `first` on
-void hitAlphaTriangles(uint first, uint slots, TriangleRay ray, Place start, inout Place end, inout Hit hit, uint seed)
+void hitAlphaTriangles(uint first, uint slots, TriangleRay ray, Place start, inout Place end, inout Hit hit, AlphaSeed seed)
 {
     for (;;)
     {
@@ -41,7 +57,7 @@ void hitAlphaTriangles(uint first, uint slots, TriangleRay ray, Place start, ino
 
 /// The nearest surface behind `start` and before t_max; one with alpha is there with the probability of its coverage, decided
 /// by `seed`.
-Hit closestHit(vec3 origin, vec3 direction, Place start, float t_max, uint seed)
+Hit closestHit(vec3 origin, vec3 direction, Place start, float t_max, AlphaSeed seed)
 {
     traversal_depth = 0u;
     uint current = 0u;
@@ -93,6 +109,11 @@ Hit closestHit(vec3 origin, vec3 direction, Place start, float t_max, uint seed)
             break;
     }
     return hit;
+}
+
+Hit closestHit(vec3 origin, vec3 direction, Place start, float t_max, uint seed)
+{
+    return closestHit(origin, direction, start, t_max, AlphaSeed(seed, ivec2(0)));
 }
 
 /// What a thin wall lets straight through where it is; 0 for any other surface.

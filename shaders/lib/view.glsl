@@ -2,6 +2,7 @@
 #ifndef LIB_VIEW_GLSL
 #define LIB_VIEW_GLSL
 #include "shaders/lib/math.glsl"
+#include "shaders/lib/random.glsl"
 #include "shaders/primary/primary.h"
 
 /// The ray through place `at` of the picture, in pixels from its upper left corner, from the near plane to the far one.
@@ -22,6 +23,16 @@ Ray cameraRay(CameraParams camera, vec2 at, uint path)
     if (camera.far_plane > 0.0)
         ray.t_max = (camera.far_plane - camera.near_plane) * per_depth;
     return ray;
+}
+
+/// The ray of a pixel: through a place of its own (box filter), the same for all pixels where the camera is jittered.
+/// @param sample_ of the dispatch, of sample_count
+Ray pixelRay(CameraParams camera, uint pixel, uint sample_)
+{
+    uint row = quotient(pixel, camera.width), column = pixel - row * camera.width;
+    Sampler s = Sampler(hash(camera.seed, pixel), camera.first_sample + sample_, 0u);
+    vec2 within = camera.jitter.x > 0.0 ? camera.jitter : nextPair(s);
+    return cameraRay(camera, vec2(column, row) + within, sample_ * camera.width * camera.height + pixel);
 }
 
 /// Metres from the eye, or the plane through it, to where its ray starts.

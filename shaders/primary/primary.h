@@ -26,17 +26,14 @@ GPU_SIZE(CameraParams, 88);
 
 struct ChainParams
 {
-    uint depth;       // specular events before this one
-    uint depth_limit; // most specular events in a chain
-    uint splits;      // 1: mirrored light goes on to a second point of its own, [pixel_count + pixel]
-    uint pixel_count;
-    uint first_sample;
-    uint seed;
-    float width;  // metres, of a camera ray at the eye
-    float spread; // by which it widens a metre
-    vec3 eye;     // the camera's position
+    CameraParams camera; // with sample_count 1
+    uint depth_limit;    // most specular events in a chain
+    uint splits;         // 1: mirrored light goes on to a second point of its own, [pixel_count + pixel]
+    float width;         // metres, of a camera ray at the eye
+    float spread;        // by which it widens a metre
+    uint trace_seed;     // of stochastic alpha, changes with the sample
 };
-GPU_SIZE(ChainParams, 44);
+GPU_SIZE(ChainParams, 108);
 
 struct ShadingPoint // where a pixel's light is to be found: first vertex after E S* that scatters
 {

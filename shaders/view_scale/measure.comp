@@ -12,8 +12,10 @@
 layout(local_size_x = kMeasureGroupSize) in;
 layout(push_constant, scalar) uniform Params { MeasureViewParams params; };
 
-layout(set = 1, binding = 0, scalar) readonly buffer Points { ShadingPoint points[]; };
+layout(set = 1, binding = 0) uniform usamplerBuffer Points;
 layout(set = 1, binding = 1, scalar) buffer Scale { ViewScale scale; }; // keeps its distance where there is nothing in view
+
+const int kPointTexels = 5; // of a ShadingPoint
 
 shared vec2 sums[kMeasureGroupSize]; // of logarithms or depths, and points
 
@@ -24,14 +26,12 @@ void main()
     vec2 sum = vec2(0.0);
     for (uint i = t; i < wanted; i += kMeasureGroupSize)
     {
-        uint point = uint(float(i) * (float(params.point_count) / float(wanted)));
-        if (point >= params.point_count || points[point].slot == kNone)
-            continue;
-        vec3 to_point = points[point].position - params.eye;
-        if (params.orthographic != 0u)
-            sum += vec2(dot(to_point, params.forward), 1.0);
-        else if (length(to_point) > 0.0)
-            sum += vec2(log(length(to_point)), 1.0);
+        uint index = uint(float(i) * (float(params.point_count) / float(wanted)));
+        uvec4 point = texelFetch(Points, kPointTexels * int(min(index, params.point_count - 1u))); // position and slot
+        vec3 to_point = uintBitsToFloat(point.xyz) - params.eye;
+        float along = params.orthographic != 0u ? dot(to_point, params.forward) : log(length(to_point));
+        if (point.w != kNone && !isinf(along))
+            sum += vec2(along, 1.0);
     }
     sums[t] = sum;
     for (uint half_ = kMeasureGroupSize / 2u; half_ > 0u; half_ /= 2u)

@@ -175,4 +175,31 @@ TEST(PictureFile, OfAnotherKindOrSizeIsNotMistaken)
     EXPECT_EQ(pictureState(folder / "folder.exr", 4, 4), PictureState::kOther);
     EXPECT_EQ(pictureState(folder / "none.exr", 4, 4), PictureState::kNone);
 }
+TEST(WriteFile, IsRefusedWithTheSentenceThatWasThereBeforeTheWork)
+{
+    const TemporaryFolder folder;
+    const std::vector<uint8_t> bytes{1, 2, 3};
+    // No one can write to /proc, root included.
+    for (const std::filesystem::path& path : {folder / "none" / "a", folder.path(), std::filesystem::path("/proc/a")})
+    {
+        const Status can = canWriteFile(path), written = writeFile(path, bytes);
+        ASSERT_FALSE(can) << path;
+        ASSERT_FALSE(written) << path;
+        EXPECT_EQ(can.error().code, ExitCode::kIo);
+        EXPECT_EQ(written.error().code, ExitCode::kIo);
+        EXPECT_EQ(can.error().message, written.error().message);
+    }
+    EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+}
+
+TEST(WriteFile, CanBeAskedForWithoutAnyChange)
+{
+    const TemporaryFolder folder;
+    ASSERT_TRUE(canWriteFile(folder / "a"));
+    EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+    ASSERT_TRUE(writeFile(folder / "a", std::vector<uint8_t>{1, 2, 3}));
+    ASSERT_TRUE(canWriteFile(folder / "a"));
+    EXPECT_EQ(fileBytes(folder / "a"), "\1\2\3");
+    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1);
+}
 } // namespace

@@ -8,6 +8,14 @@ namespace
 {
 constexpr uint32_t kFramesPerSubmission = 32;
 
+const Result<std::unique_ptr<Device>>& openedDevice();
+
+void stopBuilding()
+{
+    if (const auto& opened = openedDevice())
+        (*opened)->stopBuilding();
+}
+
 const Result<std::unique_ptr<Device>>& openedDevice()
 {
     // Never closed: scenes and renderers of any test borrow it, and the end of the process frees everything.
@@ -21,7 +29,9 @@ const Result<std::unique_ptr<Device>>& openedDevice()
             const auto index = selectDevice(instance->devices(), "");
             if (!index)
                 return index.error();
-            return Device::create(*instance, *index, false);
+            auto device = Device::create(*instance, *index, false);
+            std::atexit(stopBuilding); // the driver ends after that, and must not be busy
+            return device;
         }());
     return *opened;
 }

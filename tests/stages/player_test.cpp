@@ -188,16 +188,39 @@ TEST_F(Player, RefusesArgumentsThatMakeNoSense)
     expectPlayRefused(scene + "--output " + path("out.jpg"), 1, ".exr or .png");
 }
 
-TEST_F(Player, RefusesOutputsThatCannotBeWritten)
+/// Where there is no driver, so that what is refused at once differs from what a device would be needed for.
+TEST_F(Player, RefusesOutputsThatCannotBeWrittenBeforeItOpensADevice)
 {
     std::filesystem::create_directory(folder_ / "folder.exr");
-    const std::string scene = path("scene.lumi") + " --mode direct ";
-    expectPlayRefused(scene + "--output " + path("none/out.exr"), 2, "none");
-    expectPlayRefused(scene + "--output " + path("folder.exr"), 2, "folder");
-    expectPlayRefused(scene + "--output /proc/out.exr", 2,
-                      "cannot be created"); // a folder no one can write to, root included
-    expectPlayRefused(scene + "--output /proc/out.png", 2, "cannot be created");
-    expectPlayRefused(scene + "--stats " + path("none/stats.json"), 2, "");
+    std::filesystem::create_directory(folder_ / "frame-3.exr");
+    writeFile(folder_ / "here.exr", "what was there");
+    const auto expectRefused = [&](const std::string& arguments, int code, const std::string& words)
+    {
+        SCOPED_TRACE(arguments);
+        const std::set<std::string> before = files();
+        const std::string driverless = fmt::format("VK_ICD_FILENAMES=/none VK_DRIVER_FILES=/none '{}' --headless {} {}",
+                                                   LUMICUT_PLAY, path("scene.lumi"), arguments);
+        expectRefusal(runProgram("/usr/bin/env", driverless), before, code, words);
+        EXPECT_EQ(fileBytes(folder_ / "here.exr"), "what was there");
+    };
+    expectRefused("--output " + path("none/out.exr"), 2, "none");
+    expectRefused("--output " + path("folder.exr"), 2, "folder.exr: error: The output path is a folder");
+    // No one can write to that folder, root included.
+    expectRefused("--output /proc/out.exr", 2, "/proc/out.exr: error: The file cannot be created");
+    expectRefused("--output /proc/out.png", 2, "/proc/out.png: error: The file cannot be created");
+    expectRefused("--stats " + path("none/stats.json"), 2, "none");
+    expectRefused("--stats /proc/stats.json", 2, "/proc/stats.json: error: The file cannot be created");
+    expectRefused("--frames 0-3 --output /proc/frame-%d.exr", 2,
+                  "/proc/frame-0.exr: error: The file cannot be created");
+    expectRefused("--frames 0-3 --force --output " + path("frame-%d.exr"), 2,
+                  "frame-3.exr: error: The output path is a folder");
+    expectRefused("--mode reference --samples 0-3 --output /proc/out.exr", 2,
+                  "/proc/out.exr: error: The file cannot be created");
+    for (const std::string& writable :
+         {"--output " + path("here.exr"), "--output " + path("out.png"), "--stats " + path("stats.json"),
+          "--frames 0-2 --output " + path("frame-%d.exr"),
+          "--mode reference --samples 0-3 --force --output " + path("here.exr")})
+        expectRefused(writable, 4, "mesa-vulkan-drivers");
 }
 
 TEST_F(Player, SaysWhichDevicesThereAreWhereNoneMatches)

@@ -481,10 +481,10 @@ TEST_F(RecorderDeathTest, RefusesConstantsThatNoKernelUses)
 {
     GTEST_FLAG_SET(death_test_style, "threadsafe");
     const std::array scene{Constant{"kSceneFeatures", 0}}, nonsense{Constant{"kNonsense", 0}};
-    EXPECT_EQ(device().kernel("resolve/tonemap", SharedConstants(scene)).pipeline(),
-              device().kernel("resolve/tonemap").pipeline());
-    EXPECT_NE(device().kernel("primitives/sum", {{"kFlags", 1}}).pipeline(),
-              device().kernel("primitives/sum", {{"kFlags", 0}}).pipeline());
+    EXPECT_EQ(device().pipeline(device().kernel("resolve/tonemap", SharedConstants(scene))),
+              device().pipeline(device().kernel("resolve/tonemap")));
+    EXPECT_NE(device().pipeline(device().kernel("primitives/sum", {{"kFlags", 1}})),
+              device().pipeline(device().kernel("primitives/sum", {{"kFlags", 0}})));
     EXPECT_DEATH((void)device().kernel("resolve/tonemap", {{"kSceneFeatures", 0}}),
                  "resolve/tonemap: it uses no specialization constant 'kSceneFeatures'");
     EXPECT_DEATH((void)device().kernel("resolve/tonemap", SharedConstants(nonsense)),
