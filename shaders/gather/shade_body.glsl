@@ -12,15 +12,18 @@ void main()
     Gathered sum = Gathered(vec3(0.0), hit.slot == kNone ? 0.0 : state.throughput.x / max(hit.t, 1e-6));
     uint path = ray.path, depth = 0u;
     Passage passage = kNoPassage;
-    for (;;)
+    bool goes_on;
+    do // tests at its end: see lib/bvh.glsl why
     {
         GatherVertex vertex = shadeGatherVertex(ray, hit, state, passage, gatherSampler(params, path, depth), false);
         sum.radiance += vertex.radiance;
-        if (!vertex.goes_on || depth >= params.depth_limit)
-            break;
-        ray = vertex.next;
-        ++depth;
-        hit = closestHit(ray.origin, ray.direction, kRayStart, ray.t_max, hash(hash(params.seed, depth), path));
-    }
+        goes_on = vertex.goes_on && depth < params.depth_limit;
+        if (goes_on)
+        {
+            ray = vertex.next;
+            ++depth;
+            hit = closestHit(ray.origin, ray.direction, kRayStart, ray.t_max, hash(hash(params.seed, depth), path));
+        }
+    } while (goes_on);
     gathered[path] = sum;
 }

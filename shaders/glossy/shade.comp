@@ -36,17 +36,20 @@ void main()
     vec3 sum = vec3(0.0);
     uint path = ray.path, depth = 0u;
     Passage passage = kNoPassage;
-    for (;;)
+    bool goes_on;
+    do // tests at its end: see lib/bvh.glsl why
     {
         Sampler sampler_ = Sampler(hash(params.seed, path), params.first_sample, depth * kGatherDimensions);
         GatherVertex vertex = shadeGatherVertex(ray, hit, state, passage, sampler_, true);
         sum += vertex.radiance;
-        if (!vertex.goes_on || depth >= params.depth_limit)
-            break;
-        ray = vertex.next;
-        ++depth;
-        hit = closestHit(ray.origin, ray.direction, kRayStart, ray.t_max, hash(hash(params.seed, ~depth), path));
-    }
+        goes_on = vertex.goes_on && depth < params.depth_limit;
+        if (goes_on)
+        {
+            ray = vertex.next;
+            ++depth;
+            hit = closestHit(ray.origin, ray.direction, kRayStart, ray.t_max, hash(hash(params.seed, ~depth), path));
+        }
+    } while (goes_on);
     if (sum != vec3(0.0))
         radiance[path] += sum;
 }

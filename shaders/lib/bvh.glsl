@@ -147,7 +147,9 @@ void swapIfFarther(inout float t0, inout uint c0, inout float t1, inout uint c1)
 uint leafEnd(uint child) { return (child & kLeafFirstMask) + ((child >> kLeafCountShift) & kLeafCountMask) + 1u; }
 
 // Loops here and in lib/trace.glsl test at their end. Software Vulkan takes no branch but the one back to a loop's begin:
-// threads that leave at the head of a loop cost its body once more, and every body is run once at least.
+// threads that leave at the head of a loop cost its body once more, and every body is run once at least. Mesa 22.3 gives some
+// other threads wrong hits where threads have left a loop in its middle and loops follow in its body: pictures then differ from
+// run to run.
 
 // Children still to be visited, and their entry distances. Module scope, so that functions share them without copies.
 uint stacked_children[kTraversalStackSize];

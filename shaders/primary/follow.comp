@@ -32,22 +32,23 @@ void main()
     uint medium = points[path].slot, mirror = points[path].mirror;
     float width = points[path].width;
     uint depth = 1u;
-    for (;;)
+    do // tests at its end: see lib/bvh.glsl why
     {
         c.point = beginPoint(ray.direction, depth, throughput, width);
         c.point.slot = medium;
         c.point.mirror = mirror;
         Hit hit = closestHit(ray.origin, ray.direction, kRayStart, ray.t_max, hash(params.trace_seed + depth, path));
         chainVertex(c, ray, hit, depth, false);
-        if (!c.goes_on)
-            break;
-        ray = c.next;
-        throughput = c.point.throughput;
-        medium = c.point.slot;
-        mirror = c.point.mirror;
-        width = c.point.width;
-        ++depth;
-    }
+        if (c.goes_on)
+        {
+            ray = c.next;
+            throughput = c.point.throughput;
+            medium = c.point.slot;
+            mirror = c.point.mirror;
+            width = c.point.width;
+            ++depth;
+        }
+    } while (c.goes_on);
     points[path] = c.point;
     diffuse_points[path] = c.diffuse;
     radiance[path] = c.light;
