@@ -14,8 +14,8 @@ Status checkPicturePath(const std::filesystem::path& path)
 
 namespace
 {
-Status capturePng(const std::filesystem::path& path, Renderer& renderer, const Device& device, const SceneGpu& scene,
-                  const Settings& settings, std::span<const PictureNote> notes)
+std::vector<uint8_t> displayed(Renderer& renderer, const Device& device, const SceneGpu& scene,
+                               const Settings& settings)
 {
     Recorder rec(device);
     rec.begin(scene.descriptorSet());
@@ -28,21 +28,24 @@ Status capturePng(const std::filesystem::path& path, Renderer& renderer, const D
     for (const uint32_t pixel : rgba)
         for (const uint32_t shift : {0u, 8u, 16u})
             rgb.push_back(uint8_t(pixel >> shift));
-    return writePng(path, renderer.width(), renderer.height(), 3, rgb, notes);
+    return rgb;
 }
-/// A layer's name, its channels and their values, interleaved.
-struct LayerValues
+
+using Layer = Capture::Layer;
+
+Layer pictureOf(const Renderer& renderer, const Device& device)
 {
-    std::string name, channels;
-    std::vector<float> values;
-    bool half = false;
-};
+    Layer layer{.name = "", .channels = "RGB", .values = {}};
+    for (const gpu::vec3& pixel : renderer.picture(device))
+        layer.values.insert(layer.values.end(), {pixel.x, pixel.y, pixel.z});
+    return layer;
+}
 
 /// A member of LayerSums as the mean over `count` frames.
-LayerValues meanOf(std::span<const gpu::LayerSums> sums, uint32_t count, const std::string& name,
-                   gpu::vec3 gpu::LayerSums::*member)
+Layer meanOf(std::span<const gpu::LayerSums> sums, uint32_t count, const std::string& name,
+             gpu::vec3 gpu::LayerSums::*member)
 {
-    LayerValues layer{.name = name, .channels = "RGB", .values = {}};
+    Layer layer{.name = name, .channels = "RGB", .values = {}};
     for (const gpu::LayerSums& pixel : sums)
     {
         const gpu::vec3 mean = 1 / float(count) * (pixel.*member);
@@ -51,10 +54,9 @@ LayerValues meanOf(std::span<const gpu::LayerSums> sums, uint32_t count, const s
     return layer;
 }
 
-LayerValues normalsOf(std::span<const gpu::LayerSums> sums)
+Layer normalsOf(std::span<const gpu::LayerSums> sums)
 {
-    LayerValues layer{
-        .name = "normal", .channels = "XYZ", .values = {}, .half = true}; // 11 bits suffice for parts of 1
+    Layer layer{.name = "normal", .channels = "XYZ", .values = {}, .half = true}; // 11 bits suffice for parts of 1
     for (const gpu::LayerSums& pixel : sums)
     {
         const gpu::vec3 n = pixel.normal;
@@ -64,33 +66,28 @@ LayerValues normalsOf(std::span<const gpu::LayerSums> sums)
     return layer;
 }
 
-LayerValues depthOf(std::span<const gpu::LayerSums> sums)
+Layer depthOf(std::span<const gpu::LayerSums> sums)
 {
-    LayerValues layer{.name = "", .channels = "Z", .values = {}};
+    Layer layer{.name = "", .channels = "Z", .values = {}};
     for (const gpu::LayerSums& pixel : sums)
         layer.values.push_back(pixel.depth < gpu::kSkyDepth ? pixel.depth : INFINITY);
     return layer;
 }
 
-LayerValues motionsOf(std::span<const gpu::LayerSums> sums)
+Layer motionsOf(std::span<const gpu::LayerSums> sums)
 {
-    LayerValues layer{.name = "motion", .channels = "XY", .values = {}};
+    Layer layer{.name = "motion", .channels = "XY", .values = {}};
     for (const gpu::LayerSums& pixel : sums)
         layer.values.insert(layer.values.end(), {pixel.motion.x, pixel.motion.y});
     return layer;
 }
 
-LayerValues layerOf(const std::string& name, std::span<const gpu::LayerSums> sums, const Renderer& renderer,
-                    const Device& device)
+Layer layerOf(const std::string& name, std::span<const gpu::LayerSums> sums, const Renderer& renderer,
+              const Device& device)
 {
     const uint32_t count = std::max(renderer.sampleCount(), 1u);
     if (name == "beauty")
-    {
-        LayerValues layer{.name = "", .channels = "RGB", .values = {}};
-        for (const gpu::vec3& pixel : renderer.picture(device))
-            layer.values.insert(layer.values.end(), {pixel.x, pixel.y, pixel.z});
-        return layer;
-    }
+        return pictureOf(renderer, device);
     if (name == "normal")
         return normalsOf(sums);
     if (name == "depth")
@@ -99,7 +96,7 @@ LayerValues layerOf(const std::string& name, std::span<const gpu::LayerSums> sum
         return motionsOf(sums);
     if (name == "albedo")
     {
-        LayerValues layer = meanOf(sums, count, name, &gpu::LayerSums::albedo);
+        Layer layer = meanOf(sums, count, name, &gpu::LayerSums::albedo);
         layer.half = true;
         return layer;
     }
@@ -111,29 +108,37 @@ LayerValues layerOf(const std::string& name, std::span<const gpu::LayerSums> sum
                                        : &gpu::LayerSums::glossy);
 }
 
-Status captureLayers(const std::filesystem::path& path, const Renderer& renderer, const Device& device,
-                     std::span<const std::string> names, std::span<const PictureNote> notes)
-{
-    const std::vector<gpu::LayerSums> sums = renderer.layerSums(device);
-    std::vector<LayerValues> values;
-    for (const std::string& name : names)
-        values.push_back(layerOf(name, sums, renderer, device));
-    std::vector<ExrLayer> layers;
-    for (const LayerValues& layer : values)
-        layers.push_back({layer.name, layer.channels, layer.values, layer.half});
-    return writeExr(path, renderer.width(), renderer.height(), layers, notes);
-}
 } // namespace
 
-Status capture(const std::filesystem::path& path, Renderer& renderer, const Device& device, const SceneGpu& scene,
-               const Settings& settings, std::span<const std::string> layers, std::span<const PictureNote> notes)
+Capture::Capture(std::filesystem::path path, Renderer& renderer, const Device& device, const SceneGpu& scene,
+                 const Settings& settings, std::span<const std::string> layers)
+    : path_(std::move(path)), width_(renderer.width()), height_(renderer.height())
 {
-    if (!layers.empty())
-        return captureLayers(path, renderer, device, layers, notes);
-    if (path.extension() == ".png")
-        return capturePng(path, renderer, device, scene, settings, notes);
-    ImageF image{.width = renderer.width(), .height = renderer.height()};
-    for (const gpu::vec3& pixel : renderer.picture(device))
-        image.rgb.insert(image.rgb.end(), {pixel.x, pixel.y, pixel.z});
-    return writeExr(path, image, notes);
+    if (layers.empty() && path_.extension() == ".png")
+        rgb_ = displayed(renderer, device, scene, settings);
+    else if (layers.empty())
+        layers_.push_back(pictureOf(renderer, device));
+    if (layers.empty())
+        return;
+    const std::vector<gpu::LayerSums> sums = renderer.layerSums(device);
+    for (const std::string& name : layers)
+        layers_.push_back(layerOf(name, sums, renderer, device));
+}
+
+uint64_t Capture::byteCount() const
+{
+    uint64_t count = rgb_.size();
+    for (const Layer& layer : layers_)
+        count += layer.values.size() * sizeof(float);
+    return count;
+}
+
+Status Capture::write(std::span<const PictureNote> notes) const
+{
+    if (!rgb_.empty())
+        return writePng(path_, width_, height_, 3, rgb_, notes);
+    std::vector<ExrLayer> layers;
+    for (const Layer& layer : layers_)
+        layers.push_back({layer.name, layer.channels, layer.values, layer.half});
+    return writeExr(path_, width_, height_, layers, notes);
 }

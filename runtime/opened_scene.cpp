@@ -188,9 +188,8 @@ Status writeResults(const PlayerOptions& options, const OpenedScene& opened, Ren
         const auto origin = originOf(opened, options);
         if (!origin)
             return origin.error();
-        if (const Status status = capture(options.output, renderer, *opened.device, *opened.scene, settings,
-                                          options.layers, originNotes(*origin));
-            !status)
+        const Capture picture(options.output, renderer, *opened.device, *opened.scene, settings, options.layers);
+        if (const Status status = picture.write(originNotes(*origin)); !status)
             return status.error().about(options.output.string());
     }
     if (!options.stats.empty())

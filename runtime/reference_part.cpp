@@ -117,7 +117,7 @@ Status playReferencePart(const PlayerOptions& options)
     if (const Status status = Renderer::checkSize(*opened->device, options.width, options.height); !status)
         return status;
     const ExactSumStage stage(*opened->device, options.width * options.height);
-    const double start = statistics.elapsedMs();
+    const double start = statistics.elapsedMs() - opened->device->pipelineMs();
     if (!traceSamples(*opened, options, stage, statistics))
         return Error{ExitCode(128 + interruption()),
                      fmt::format("ended by a signal ({}), and nothing is written", ::strsignal(interruption()))};
@@ -133,7 +133,8 @@ Status playReferencePart(const PlayerOptions& options)
     if (const Status status = writeSampleSum(options.output, sum); !status)
         return status.error().about(options.output.string());
     statistics.frames_written = 1;
-    statistics.frames_ms = statistics.elapsedMs() - start;
+    statistics.frames_ms =
+        statistics.elapsedMs() - opened->device->pipelineMs() - start; // waiting for them: the start's
     if (options.stats.empty())
         return Success{};
     const Status status = statistics.writeJson(options.stats);

@@ -1,9 +1,9 @@
 #include "runtime/sequence.h"
 
 #include "image/write_image.h"
-#include "runtime/capture.h"
 #include "runtime/frame_files.h"
 #include "runtime/frame_seed.h"
+#include "runtime/frame_writer.h"
 #include "runtime/headless.h"
 #include "runtime/interruption.h"
 #include "runtime/nearest_origin.h"
@@ -24,7 +24,7 @@ public:
     Sequence(const PlayerOptions& options, const OpenedScene& opened, const PictureOrigin& origin,
              const FrameFiles& files, size_t frame_count, int64_t warm_up, Statistics& statistics)
         : options_(options), opened_(opened), files_(files), frame_count_(frame_count), warm_up_(warm_up),
-          statistics_(statistics), rec_(*opened.device), notes_(originNotes(origin))
+          statistics_(statistics), rec_(*opened.device), writer_(originNotes(origin), frame_count)
     {
     }
 
@@ -35,19 +35,22 @@ public:
 
 private:
     Status begin();
+    Status renderAll(std::span<const uint32_t> frames);
     Status renderPart(std::span<const uint32_t> frames);
     Status renderStanding(uint32_t frame);
     Status renderSamples(int64_t frame, uint32_t sample_count);
     Status write(uint32_t frame);
+    /// Milliseconds of the program so far, but for waiting for pipelines: that is part of its start.
+    double workMs() const { return statistics_.elapsedMs() - opened_.device->pipelineMs(); }
 
     const PlayerOptions& options_;
     const OpenedScene& opened_;
     const FrameFiles& files_;
-    size_t frame_count_, written_ = 0; // that are to be written, and are
-    int64_t warm_up_;                  // frames of mode gi before each part
+    size_t frame_count_; // that are to be written
+    int64_t warm_up_;    // frames of mode gi before each part
     Statistics& statistics_;
     Recorder rec_;
-    std::vector<PictureNote> notes_; // for every frame's header
+    FrameWriter writer_;
     std::optional<Renderer> renderer_;
 };
 
@@ -70,19 +73,13 @@ Status Sequence::renderSamples(int64_t frame, uint32_t sample_count)
         return Success{};
     return Error{ExitCode(128 + interruption()),
                  fmt::format("ended by a signal ({}) with {} of {} frames written; the same command renders the others",
-                             ::strsignal(interruption()), written_, frame_count_)};
+                             ::strsignal(interruption()), writer_.writtenCount(), frame_count_)};
 }
 
 Status Sequence::write(uint32_t frame)
 {
-    const std::filesystem::path path = files_.of(frame);
-    if (const Status status =
-            capture(path, *renderer_, *opened_.device, *opened_.scene, opened_.settings, options_.layers, notes_);
-        !status)
-        return status.error().about(path.string());
-    fmt::print(stderr, "{} ({} of {})\n", path.string(), ++written_, frame_count_);
-    statistics_.frames_written = uint32_t(written_);
-    return Success{};
+    return writer_.write(
+        Capture(files_.of(frame), *renderer_, *opened_.device, *opened_.scene, opened_.settings, options_.layers));
 }
 
 /// @param frames of one part, ascending
@@ -95,17 +92,17 @@ Status Sequence::renderPart(std::span<const uint32_t> frames)
     {
         // Other modes remember nothing: every frame has a seed of its own, with which a renderer begins anew.
         const int64_t frame = options_.mode == Mode::kGi ? next++ : frames.front();
-        const double start = statistics_.elapsedMs();
+        const double start = workMs();
         if (const Status status = renderSamples(frame, 1); !status)
             return status;
         if (frame != frames.front())
         {
-            statistics_.thrown_away_ms += statistics_.elapsedMs() - start;
+            statistics_.thrown_away_ms += workMs() - start;
             continue;
         }
         if (const Status status = write(frames.front()); !status)
             return status;
-        statistics_.frames_ms += statistics_.elapsedMs() - start;
+        statistics_.frames_ms += workMs() - start;
         frames = frames.subspan(1);
     }
     return Success{};
@@ -116,15 +113,25 @@ Status Sequence::renderStanding(uint32_t frame)
 {
     if (const Status status = begin(); !status)
         return status;
-    const double start = statistics_.elapsedMs();
+    const double start = workMs();
     if (const Status status = renderSamples(frame, options_.sample_count); !status)
         return status;
     const Status status = write(frame);
-    statistics_.frames_ms += statistics_.elapsedMs() - start;
+    statistics_.frames_ms += workMs() - start;
     return status;
 }
 
 Status Sequence::render(std::span<const uint32_t> frames)
+{
+    const Status rendered = renderAll(frames);
+    const double start = workMs();
+    const Status written = writer_.finish(); // those before a signal, too
+    statistics_.frames_ms += workMs() - start;
+    statistics_.frames_written = uint32_t(writer_.writtenCount());
+    return rendered ? written : rendered;
+}
+
+Status Sequence::renderAll(std::span<const uint32_t> frames)
 {
     while (!frames.empty())
     {
@@ -145,7 +152,7 @@ Status Sequence::writeResults()
         return Success{};
     fmt::print(stderr,
                "{} of {} frames written in {:.2f} s: {:.2f} s for them, {:.2f} s for frames that are not kept\n",
-               written_, frame_count_, 1e-3 * statistics_.elapsedMs(), 1e-3 * statistics_.frames_ms,
+               writer_.writtenCount(), frame_count_, 1e-3 * statistics_.elapsedMs(), 1e-3 * statistics_.frames_ms,
                1e-3 * statistics_.thrown_away_ms);
     PlayerOptions rest = options_;
     rest.output.clear(); // the frames are there

@@ -121,7 +121,8 @@ void WindowedPlayer::saveScreenshot()
     const std::string name = freeName("screenshot", {".png", ".exr"});
     notice_ = fmt::format("wrote {}.png and .exr", name);
     for (const char* extension : {".png", ".exr"})
-        if (const Status status = capture(name + extension, *renderer_, *opened_.device, *opened_.scene, settings_);
+        if (const Status status =
+                Capture(name + extension, *renderer_, *opened_.device, *opened_.scene, settings_).write();
             !status)
             notice_ = status.error().message;
     fmt::print(stderr, "{}\n", notice_);

@@ -86,8 +86,8 @@ TEST_F(RememberingSequence, HasTheSameBytesInPieces)
     EXPECT_TRUE(renderSamples(rec, *renderer, *opened_, Moment{}, 0, 2, statistics_));
     const auto origin = originOf(*opened_, options_);
     ASSERT_TRUE(origin) << origin.error().message;
-    ASSERT_TRUE(capture(folder_ / "still/picture.exr", *renderer, *opened_->device, *opened_->scene, opened_->settings,
-                        {}, originNotes(*origin)));
+    ASSERT_TRUE(Capture(folder_ / "still/picture.exr", *renderer, *opened_->device, *opened_->scene, opened_->settings)
+                    .write(originNotes(*origin)));
     EXPECT_EQ(frame("still", "f00.exr"), frame("still", "picture.exr"));
 }
 
@@ -156,7 +156,7 @@ TEST_F(RememberingSequence, LayersAddUpToThePicture)
         expectBackWall(layers, frames, options_.width, options_.height);
     }
     const std::vector<std::string> names(kLayerNames.begin(), kLayerNames.end());
-    ASSERT_TRUE(capture(folder_ / "layers.exr", *renderer, *opened_->device, *opened_->scene, settings, names));
+    ASSERT_TRUE(Capture(folder_ / "layers.exr", *renderer, *opened_->device, *opened_->scene, settings, names).write());
     const std::string bytes = fileBytes(folder_ / "layers.exr");
     for (const char* channel : {"R", "Z", "albedo.R", "caustics.G", "direct.B", "emission.R", "glossy.R", "indirect.R",
                                 "motion.Y", "normal.X"})
