@@ -13,6 +13,13 @@ uint32_t tileCount(uint32_t width, uint32_t height)
     static_assert(kSide * kSide == gpu::kHistoryTileSize);
     return ((width + kSide - 1) / kSide) * ((height + kSide - 1) / kSide);
 }
+uint32_t judgeGroupCount(uint32_t width, uint32_t height)
+{
+    constexpr uint32_t kSide = gpu::kJudgeTilesAlong * gpu::kHistoryTileSide;
+    static_assert(gpu::kJudgeSize ==
+                  gpu::kJudgeTilesAlong * gpu::kJudgeTilesAlong * gpu::kTileBlocks * gpu::kHistoryTerms);
+    return ((width + kSide - 1) / kSide) * ((height + kSide - 1) / kSide);
+}
 } // namespace
 
 HistoryStage::HistoryStage(const Device& device, uint32_t width, uint32_t height, const Scratch& scratch)
@@ -82,7 +89,7 @@ void HistoryStage::record(Recorder& rec, const Input& in)
              {"Displacements", in.signals.displacements},
              {"Tiles", tiles_},
              {"Blocks", blocks_}});
-    rec.run(judge_, thread_count, params,
+    rec.run(judge_, judgeGroupCount(camera.width, camera.height) * gpu::kJudgeSize, params,
             {{"Motions", in.signals.motions},
              {"Guides", in.signals.guides},
              {"Compared", compared_},

@@ -49,6 +49,11 @@ GPU_CONST uint kTileBlocks = 16u;
 // thread works on one term of one block, so that a tile takes as many threads as it has pixels.
 GPU_CONST uint kNoPixel = 0xFFFFFFFFu;
 
+// history/judge.comp works on squares of tiles: what surrounds them is loaded once for all, 1.9 pixels for each of their own. Tiles
+// by themselves take 3.1, and half as long again.
+GPU_CONST uint kJudgeTilesAlong = 2u;
+GPU_CONST uint kJudgeSize = 256u; // threads
+
 struct HistoryBlock // tile after tile; within one row by row
 {
     uint pixel;     // of the picture, that is compared: the first that shows a surface; kNoPixel: none does
