@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 Status checkPicturePath(const std::filesystem::path& path)
 {
@@ -35,9 +36,10 @@ using Layer = Capture::Layer;
 
 Layer pictureOf(const Renderer& renderer, const Device& device)
 {
-    Layer layer{.name = "", .channels = "RGB", .values = {}};
-    for (const gpu::vec3& pixel : renderer.picture(device))
-        layer.values.insert(layer.values.end(), {pixel.x, pixel.y, pixel.z});
+    const std::vector<gpu::vec3> pixels = renderer.picture(device);
+    Layer layer{.name = "", .channels = "RGB", .values = std::vector<float>(3 * pixels.size())};
+    static_assert(sizeof(gpu::vec3) == 3 * sizeof(float));
+    std::memcpy(layer.values.data(), pixels.data(), pixels.size() * sizeof(gpu::vec3));
     return layer;
 }
 

@@ -1,6 +1,7 @@
 #include "runtime/gpu/device.h"
 
 #include "format/gpu_scene.h"
+#include "format/temporary_file.h"
 #include "runtime/gpu/cache_folder.h"
 
 #include <algorithm>
@@ -134,6 +135,38 @@ void Device::nameObject(VkObjectType type, uint64_t handle, std::string_view nam
 
 // ---- Pipelines -----------------------------------------------------------------------------------------------------
 
+namespace
+{
+std::vector<char> fileContent(const std::filesystem::path& path)
+{
+    std::ifstream file(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// Nothing where the driver has no room for it.
+std::vector<char> cacheData(VkDevice device, VkPipelineCache cache)
+{
+    size_t byte_count = 0;
+    std::vector<char> data;
+    if (vkGetPipelineCacheData(device, cache, &byte_count, nullptr) != VK_SUCCESS)
+        return data;
+    data.resize(byte_count);
+    if (vkGetPipelineCacheData(device, cache, &byte_count, data.data()) != VK_SUCCESS)
+        data.clear();
+    return data;
+}
+} // namespace
+
+VkPipelineCache Device::pipelineCacheOf(std::span<const char> data) const
+{
+    const VkPipelineCacheCreateInfo info{.sType = VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO,
+                                         .initialDataSize = data.size(),
+                                         .pInitialData = data.data()};
+    VkPipelineCache cache = VK_NULL_HANDLE;
+    vulkanCheck(vkCreatePipelineCache(device_, &info, nullptr, &cache));
+    return cache;
+}
+
 void Device::loadPipelineCache()
 {
     std::vector<char> data;
@@ -141,30 +174,29 @@ void Device::loadPipelineCache()
     {
         pipeline_cache_path_ = *folder / fmt::format("pipelines-{:04x}-{:04x}-{:08x}.bin", properties_.vendorID,
                                                      properties_.deviceID, properties_.driverVersion);
-        std::ifstream file(pipeline_cache_path_, std::ios::binary);
-        data.assign(std::istreambuf_iterator<char>(file), {});
+        data = fileContent(pipeline_cache_path_);
     }
-    const VkPipelineCacheCreateInfo info{.sType = VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO,
-                                         .initialDataSize = data.size(),
-                                         .pInitialData = data.data()};
-    vulkanCheck(vkCreatePipelineCache(device_, &info, nullptr, &pipeline_cache_));
+    pipeline_cache_ = pipelineCacheOf(data);
+    pipeline_cache_bytes_ = data.empty() ? 0 : cacheData(device_, pipeline_cache_).size();
     pipelines_ = std::make_unique<PipelineBuilder>(*this, pipeline_cache_);
 }
 
+/// A cache is a convenience: a folder that cannot be written costs start-up time, nothing else.
 void Device::savePipelineCache() const
 {
-    size_t bytes = 0;
-    if (pipeline_cache_path_.empty() || vkGetPipelineCacheData(device_, pipeline_cache_, &bytes, nullptr) != VK_SUCCESS)
-        return;
-    std::vector<char> data(bytes);
-    if (vkGetPipelineCacheData(device_, pipeline_cache_, &bytes, data.data()) != VK_SUCCESS)
-        return;
-    // A cache is a convenience: a folder that cannot be written costs start-up time, nothing else.
+    const size_t byte_count = cacheData(device_, pipeline_cache_).size();
+    if (pipeline_cache_path_.empty() || byte_count == 0 || byte_count == pipeline_cache_bytes_)
+        return; // nothing is new
+    // Programs that began with this one may have ended since: theirs stay, too.
+    const VkPipelineCache others = pipelineCacheOf(fileContent(pipeline_cache_path_));
+    vkMergePipelineCaches(device_, pipeline_cache_, 1, &others);
+    vkDestroyPipelineCache(device_, others, nullptr);
+    const std::vector<char> data = cacheData(device_, pipeline_cache_);
     std::error_code ignored;
     std::filesystem::create_directories(pipeline_cache_path_.parent_path(), ignored);
-    const auto temporary = pipeline_cache_path_.string() + fmt::format(".{:016x}.tmp", uint64_t(uintptr_t(device_)));
-    std::ofstream(temporary, std::ios::binary).write(data.data(), std::streamsize(bytes));
-    std::filesystem::rename(temporary, pipeline_cache_path_, ignored);
+    TemporaryFile file(pipeline_cache_path_);
+    if (file.isOpen() && file.append(std::as_bytes(std::span(data))))
+        file.commit(Durability::kUntilPowerCut);
 }
 
 Kernel::State::~State()

@@ -130,6 +130,7 @@ private:
     };
     Device() = default;
     void createLayouts();
+    VkPipelineCache pipelineCacheOf(std::span<const char> data) const;
     void loadPipelineCache();
     void savePipelineCache() const;
     using ConstantValue = PipelineBuilder::ConstantValue;
@@ -158,6 +159,7 @@ private:
     VkCommandPool once_pool_ = VK_NULL_HANDLE;
     VkPipelineCache pipeline_cache_ = VK_NULL_HANDLE;
     std::filesystem::path pipeline_cache_path_;
+    size_t pipeline_cache_bytes_ = 0; // as it was loaded; 0: there was none
     PFN_vkSetDebugUtilsObjectNameEXT set_name_ = nullptr;
     std::unique_ptr<PipelineBuilder> pipelines_;
     mutable std::map<std::pair<std::string, std::vector<ConstantValue>>, Kernel> kernels_; // by name and constants
