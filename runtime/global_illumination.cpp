@@ -338,8 +338,9 @@ InterpolateStage::Sorted GlobalIllumination::recordGather(const Context& c, cons
         gather_.record(c.rec, c.rays, samples, map, cut, gatherInput(c), guide_ ? &*guide_ : nullptr);
     }
     const auto scope = c.rec.scope("interpolate");
-    return interpolate_.sort(c.rec, samples,
-                             {.points = c.surface.points, .point_count = c.point_count, .width = width_});
+    return interpolate_.sort(
+        c.rec, samples,
+        {.points = c.surface.points, .point_count = c.point_count, .width = width_, .by_direction = c.plan.harmonics});
 }
 
 void GlobalIllumination::recordIndirect(const Context& c, const InterpolateStage::Sorted& samples) const

@@ -22,10 +22,11 @@ uint32_t judgeGroupCount(uint32_t width, uint32_t height)
 }
 } // namespace
 
-HistoryStage::HistoryStage(const Device& device, uint32_t width, uint32_t height, const Scratch& scratch)
-    : tile_count_(tileCount(width, height)), compare_(device.kernel("history/compare")),
-      judge_(device.kernel("history/judge")), reconcile_(device.kernel("history/reconcile")),
-      blend_(device.kernel("history/blend")),
+HistoryStage::HistoryStage(const Device& device, const SharedConstants& constants, uint32_t width, uint32_t height,
+                           const Scratch& scratch)
+    : tile_count_(tileCount(width, height)), compare_(device.kernel("history/compare", constants)),
+      judge_(device.kernel("history/judge", constants)), reconcile_(device.kernel("history/reconcile", constants)),
+      blend_(device.kernel("history/blend", constants)),
       compared_(device.texelArray<gpu::PixelPairs>("history.compared", width * height, scratch)),
       tiles_(device.array<gpu::TilePairs>("history.tiles", tile_count_, scratch)),
       blocks_(device.array<gpu::HistoryBlock>("history.blocks", tile_count_ * gpu::kTileBlocks, scratch)),

@@ -8,7 +8,9 @@ class HistoryStage
 public:
     /// Bytes of scratch memory, beside what aligning its buffers may cost.
     static uint64_t scratchBytes(uint32_t width, uint32_t height);
-    HistoryStage(const Device& device, uint32_t width, uint32_t height, const Scratch& scratch = {});
+    /// @param constants of the scene, for its features; none: all terms of light are remembered
+    HistoryStage(const Device& device, const SharedConstants& constants, uint32_t width, uint32_t height,
+                 const Scratch& scratch = {});
 
     struct Input
     {

@@ -30,14 +30,15 @@ InterpolateStage::Sorted InterpolateStage::sort(Recorder& rec, const SamplesStag
         reorder_, samples.size, NoParams{},
         {{"Size", samples.size}, {"Order", tree_.order()}, {"Samples", samples.samples}, {"Sorted", sorted_}});
     const uint32_t groups = groupsOf(view.point_count);
-    rec.run(nearby_kernel_, groups * gpu::kNearbyThreads,
-            gpu::NearbyParams{.point_count = view.point_count, .width = view.width, .group_count = groups},
-            {{"Size", samples.size},
-             {"TreeNodes", tree_.nodes()},
-             {"Samples", sorted_},
-             {"Points", view.points},
-             {"Nearby", nearby_},
-             {"NearbyCounts", nearby_counts_}});
+    if (run_ == 1 || view.by_direction) // runs of pixels search for themselves
+        rec.run(nearby_kernel_, groups * gpu::kNearbyThreads,
+                gpu::NearbyParams{.point_count = view.point_count, .width = view.width, .group_count = groups},
+                {{"Size", samples.size},
+                 {"TreeNodes", tree_.nodes()},
+                 {"Samples", sorted_},
+                 {"Points", view.points},
+                 {"Nearby", nearby_},
+                 {"NearbyCounts", nearby_counts_}});
     return {
         .size = samples.size, .tree = tree_, .samples = sorted_, .nearby = nearby_, .nearby_counts = nearby_counts_};
 }

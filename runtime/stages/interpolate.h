@@ -21,7 +21,8 @@ public:
     {
         const Buffer& points; // gpu::ShadingPoint[point_count]
         uint32_t point_count;
-        uint32_t width; // of the picture, pixels
+        uint32_t width;            // of the picture, pixels
+        bool by_direction = false; // whether GlossyStage::recordHarmonics() follows
     };
     struct Sorted // samples as pixels look them up
     {

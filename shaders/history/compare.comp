@@ -52,8 +52,11 @@ bool comparePixel(uint pixel, uint thread, out uvec4 memories)
     vec3 reflectance = max(loadDiffusePoint(pixel).reflectance, vec3(kLeastReflectance));
     PixelPairs p = PixelPairs(pairOf(texelFetch(DirectSignals, int(pixel)), past.direct),
                               packPair(lightOver(indirect[pixel], reflectance, past.indirect), past.indirect),
-                              pairOf(texelFetch(GlossySignals, int(pixel)), past.glossy),
-                              packPair(lightOver(caustics[pixel], reflectance, past.caustics), past.caustics));
+                              LightPair(uvec2(0u)), LightPair(uvec2(0u)));
+    if (kSceneHasGlossy)
+        p.glossy = pairOf(texelFetch(GlossySignals, int(pixel)), past.glossy);
+    if (kSceneHasCaustics)
+        p.caustics = packPair(lightOver(caustics[pixel], reflectance, past.caustics), past.caustics);
     pairs[pixel] = p;
     surfaces[thread] = loadGuide(pixel);
     shown[thread] = LightPair[kHistoryTerms](p.direct, p.indirect, p.glossy, p.caustics);

@@ -3,6 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "shaders/lib/light_pair.glsl"
+#include "shaders/lib/light_terms.glsl"
 #include "shaders/lib/signal.glsl"
 
 // Where light has changed since the last frame: compares what the surface around one pixel of each block shows with what it
@@ -82,9 +83,12 @@ void loadSurroundings()
         SurfaceGuide g = loadGuide(pixel);
         positions[i] = outside ? vec3(kInfinity) : g.position;
         normals[i] = smoothNormal(g.normals);
-        uvec4 first = texelFetch(Compared, 2 * pixel), second = texelFetch(Compared, 2 * pixel + 1);
+        uvec4 first = texelFetch(Compared, 2 * pixel);
         shown[0][i] = first.xy;
         shown[1][i] = first.zw;
+        if (!kSceneHasGlossy && !kSceneHasCaustics)
+            continue;
+        uvec4 second = texelFetch(Compared, 2 * pixel + 1);
         shown[2][i] = second.xy;
         shown[3][i] = second.zw;
     }
@@ -169,7 +173,7 @@ void main()
         findPlaces(block, int(term), at, footprintAt(motions[pixel]));
     barrier();
     vec2 memory = unpackHalf2x16(b.memories[term]);
-    Followed followed = is_known && memory.x > 0.0 ? compareTerm(block, term, at, memory) : kUnknown;
+    Followed followed = is_known && memory.x > 0.0 && sceneHas(term) ? compareTerm(block, term, at, memory) : kUnknown;
     uint i = stored * kHistoryTerms + term;
     if (is_there)
         followed_terms[i] = packFollowed(followed, hash(params.seed, ~i));

@@ -56,6 +56,8 @@ uint blockLike(uint pixel, ivec2 here)
 
 void reconcileMemory(inout Memory past, uint block, uint term)
 {
+    if (!sceneHas(term))
+        return;
     Followed followed = kUnknown;
     if (block != kNoPixel)
         followed = unpackFollowed(texelFetch(FollowedTerms, int(block * kHistoryTerms + term)));

@@ -2,6 +2,7 @@
 // `OldHistory` and `HistoryParams params` before it includes this. Functions only.
 #ifndef LIB_RECALL_GLSL
 #define LIB_RECALL_GLSL
+#include "shaders/lib/light_terms.glsl"
 #include "shaders/lib/same_surface.glsl"
 #include "shaders/lib/signal.glsl"
 
@@ -64,11 +65,16 @@ Past recall(uint pixel)
         float weight = near.x * near.y;
         if (!(weight > 0.0) || !sameSurface(guide, normal, texelFetch(OldGuides, old), footprint))
             continue;
-        uvec4 first = texelFetch(OldHistory, 2 * old), second = texelFetch(OldHistory, 2 * old + 1);
+        uvec4 first = texelFetch(OldHistory, 2 * old);
         addTap(direct, first.xy, weight);
         addTap(indirect_, first.zw, weight);
-        addTap(glossy, second.xy, weight);
-        addTap(caustics_, second.zw, weight);
+        if (!kSceneHasGlossy && !kSceneHasCaustics)
+            continue;
+        uvec4 second = texelFetch(OldHistory, 2 * old + 1);
+        if (kSceneHasGlossy)
+            addTap(glossy, second.xy, weight);
+        if (kSceneHasCaustics)
+            addTap(caustics_, second.zw, weight);
     }
     return Past(meanOf(direct), meanOf(indirect_), meanOf(glossy), meanOf(caustics_));
 }

@@ -53,12 +53,16 @@ void rememberPixel(uint pixel, Past past)
     float most = float(params.most_frames);
     uint random = hash(params.seed, pixel);
     vec3 reflectance = max(loadDiffusePoint(pixel).reflectance, vec3(kLeastReflectance));
-    float lobe = unpackSignal(glossy_signals[pixel]).lobe;
-    history[pixel] = PixelHistory(
-        packMemory(rememberSignal(direct_signals[pixel], past.direct, most), random),
-        packMemory(rememberDiffuse(indirect[pixel], reflectance, past.indirect), hash(random)),
-        packMemory(rememberSignal(glossy_signals[pixel], past.glossy, mix(min(kSharpFrames, most), most, lobe)), hash(random + 1u)),
-        packMemory(rememberDiffuse(caustics[pixel], reflectance, past.caustics), hash(random + 2u)));
+    history[pixel].direct = packMemory(rememberSignal(direct_signals[pixel], past.direct, most), random);
+    history[pixel].indirect = packMemory(rememberDiffuse(indirect[pixel], reflectance, past.indirect), hash(random));
+    if (kSceneHasGlossy)
+    {
+        float lobe = unpackSignal(glossy_signals[pixel]).lobe;
+        Memory glossy = rememberSignal(glossy_signals[pixel], past.glossy, mix(min(kSharpFrames, most), most, lobe));
+        history[pixel].glossy = packMemory(glossy, hash(random + 1u));
+    }
+    if (kSceneHasCaustics)
+        history[pixel].caustics = packMemory(rememberDiffuse(caustics[pixel], reflectance, past.caustics), hash(random + 2u));
 }
 
 #endif

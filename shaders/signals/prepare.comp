@@ -1,6 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
+#include "shaders/lib/light_terms.glsl"
 #include "shaders/lib/path.glsl"
 #include "shaders/lib/signal.glsl"
 #include "shaders/pose/pose.h"
@@ -54,7 +55,8 @@ void main()
         normal = v.surface.normal;
     }
     direct_signals[pixel] = direct_signal;
-    glossy_signals[pixel] = glossy_signal;
+    if (kSceneHasGlossy)
+        glossy_signals[pixel] = glossy_signal;
     guides[pixel] = SurfaceGuide(point.slot != kNone ? point.position : vec3(kInfinity), packSnorm4x8(vec4(unitToOctahedral(smooth_normal), unitToOctahedral(normal))));
     vec3 displacement = displacementOf(point);
     motions[pixel] = motionOf(pixel, point, displacement, params.spread, params.has_previous != 0u);

@@ -256,9 +256,9 @@ protected:
                {
                    const auto points =
                        primary.record(rec, rays, {.camera = view, .specular_depth = 1, .emission = emission});
-                   const auto sorted =
-                       interpolate.sort(rec, {.size = size, .samples = samples, .spheres = spheres},
-                                        {.points = points.points, .point_count = kSide * kSide, .width = kSide});
+                   const auto sorted = interpolate.sort(
+                       rec, {.size = size, .samples = samples, .spheres = spheres},
+                       {.points = points.points, .point_count = kSide * kSide, .width = kSide, .by_direction = true});
                    stage.recordHarmonics(rec, sorted, harmonics,
                                          {.points = points.points,
                                           .radiance = radiance,

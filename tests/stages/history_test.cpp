@@ -24,7 +24,7 @@ protected:
         path_ = builder_.compile();
         scene_ = GiTest::load(path_);
         signals_.emplace(device(), *scene_, kPixels);
-        history_.emplace(device(), kWidth, kHeight);
+        history_.emplace(device(), scene_->constants(), kWidth, kHeight);
         primary_.emplace(device(), *scene_, kPixels);
         light_.emplace(device(), kPixels);
     }
