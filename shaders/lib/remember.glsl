@@ -53,16 +53,25 @@ void rememberPixel(uint pixel, Past past)
     float most = float(params.most_frames);
     uint random = hash(params.seed, pixel);
     vec3 reflectance = max(loadDiffusePoint(pixel).reflectance, vec3(kLeastReflectance));
-    history[pixel].direct = packMemory(rememberSignal(direct_signals[pixel], past.direct, most), random);
-    history[pixel].indirect = packMemory(rememberDiffuse(indirect[pixel], reflectance, past.indirect), hash(random));
+    PixelHistory kept;
+    kept.direct = packMemory(rememberSignal(direct_signals[pixel], past.direct, most), random);
+    kept.indirect = packMemory(rememberDiffuse(indirect[pixel], reflectance, past.indirect), hash(random));
+    if (!kSceneHasGlossy && !kSceneHasCaustics) // else the whole at once: GPUs take a tenth longer over parts
+    {
+        history[pixel].direct = kept.direct;
+        history[pixel].indirect = kept.indirect;
+        return;
+    }
+    kept.glossy = kept.caustics = HistoryLight(uvec2(0u));
     if (kSceneHasGlossy)
     {
         float lobe = unpackSignal(glossy_signals[pixel]).lobe;
         Memory glossy = rememberSignal(glossy_signals[pixel], past.glossy, mix(min(kSharpFrames, most), most, lobe));
-        history[pixel].glossy = packMemory(glossy, hash(random + 1u));
+        kept.glossy = packMemory(glossy, hash(random + 1u));
     }
     if (kSceneHasCaustics)
-        history[pixel].caustics = packMemory(rememberDiffuse(caustics[pixel], reflectance, past.caustics), hash(random + 2u));
+        kept.caustics = packMemory(rememberDiffuse(caustics[pixel], reflectance, past.caustics), hash(random + 2u));
+    history[pixel] = kept;
 }
 
 #endif
