@@ -1,6 +1,6 @@
 // Sequences of lumicut-play: the same bytes however a sequence is split or interrupted, and what is said of bad requests.
 #include "image/read_exr.h"
-#include "runtime/capture.h"
+#include "runtime/frame_writer.h"
 #include "runtime/headless.h"
 #include "runtime/sequence.h"
 #include "tests/stages/sequence_folder.h"
@@ -89,6 +89,25 @@ TEST_F(RememberingSequence, HasTheSameBytesInPieces)
     ASSERT_TRUE(Capture(folder_ / "still/picture.exr", *renderer, *opened_->device, *opened_->scene, opened_->settings)
                     .write(originNotes(*origin)));
     EXPECT_EQ(frame("still", "f00.exr"), frame("still", "picture.exr"));
+}
+
+TEST_F(RememberingSequence, NamesTheFrameThatCannotBeWritten)
+{
+    std::optional<Renderer> renderer;
+    ASSERT_TRUE(makeRenderer(renderer, *opened_, Mode::kDirect, options_.width, options_.height, opened_->settings));
+    Recorder rec(*opened_->device);
+    EXPECT_TRUE(renderSamples(rec, *renderer, *opened_, Moment{}, 0, 1, statistics_));
+    FrameWriter writer({}, 2);
+    for (const char* name : {"a.exr", "missing/b.png"}) // the second waits for the first at most
+        EXPECT_TRUE(
+            writer.write(Capture(folder_ / name, *renderer, *opened_->device, *opened_->scene, opened_->settings)))
+            << name;
+    const Status status = writer.finish();
+    ASSERT_FALSE(status);
+    EXPECT_EQ(status.error().file, (folder_ / "missing/b.png").string());
+    EXPECT_EQ(status.error().code, ExitCode::kIo);
+    EXPECT_EQ(writer.writtenCount(), 1u);
+    EXPECT_TRUE(std::filesystem::exists(folder_ / "a.exr"));
 }
 
 /// The player's scene keeps its pose from part to part: none of it may be seen in the next one.
