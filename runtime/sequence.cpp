@@ -34,7 +34,8 @@ public:
     Status writeResults();
 
 private:
-    Status begin();
+    Moment momentOf(int64_t frame) const;
+    Status begin(int64_t frame);
     Status renderAll(std::span<const uint32_t> frames);
     Status renderPart(std::span<const uint32_t> frames);
     Status renderStanding(uint32_t frame);
@@ -54,9 +55,20 @@ private:
     std::optional<Renderer> renderer_;
 };
 
-/// A renderer that remembers nothing.
-Status Sequence::begin()
+Moment Sequence::momentOf(int64_t frame) const
 {
+    const double seconds = double(frame) / options_.fps;
+    return {.seconds = opened_.animationTime(options_.seconds.value_or(0) + seconds),
+            .camera = opened_.path ? std::optional(opened_.path->at(seconds)) : std::nullopt};
+}
+
+/// A renderer that remembers nothing. How it divides lights into clusters, say, depends on where they are then: always where they
+/// are in `frame`, whatever this process has shown before.
+Status Sequence::begin(int64_t frame)
+{
+    rec_.begin(opened_.scene->descriptorSet());
+    opened_.pose(rec_, momentOf(frame).seconds);
+    rec_.submitAndWait();
     if (const Status status = makeRenderer(renderer_, opened_, options_.mode, options_.width, options_.height,
                                            opened_.settings, !options_.layers.empty());
         !status)
@@ -66,10 +78,8 @@ Status Sequence::begin()
 
 Status Sequence::renderSamples(int64_t frame, uint32_t sample_count)
 {
-    const double seconds = double(frame) / options_.fps;
-    const Moment moment{.seconds = opened_.animationTime(options_.seconds.value_or(0) + seconds),
-                        .camera = opened_.path ? std::optional(opened_.path->at(seconds)) : std::nullopt};
-    if (::renderSamples(rec_, *renderer_, opened_, moment, frameSeed(options_.seed, frame), sample_count, statistics_))
+    if (::renderSamples(rec_, *renderer_, opened_, momentOf(frame), frameSeed(options_.seed, frame), sample_count,
+                        statistics_))
         return Success{};
     return Error{ExitCode(128 + interruption()),
                  fmt::format("ended by a signal ({}) with {} of {} frames written; the same command renders the others",
@@ -85,9 +95,9 @@ Status Sequence::write(uint32_t frame)
 /// @param frames of one part, ascending
 Status Sequence::renderPart(std::span<const uint32_t> frames)
 {
-    if (const Status status = begin(); !status)
-        return status;
     int64_t next = int64_t(frames.front() / options_.part * options_.part) - warm_up_;
+    if (const Status status = begin(next); !status)
+        return status;
     while (!frames.empty())
     {
         // Other modes remember nothing: every frame has a seed of its own, with which a renderer begins anew.
@@ -111,7 +121,7 @@ Status Sequence::renderPart(std::span<const uint32_t> frames)
 /// A frame of many samples is a standing picture: what another one left would only be in the way.
 Status Sequence::renderStanding(uint32_t frame)
 {
-    if (const Status status = begin(); !status)
+    if (const Status status = begin(frame); !status)
         return status;
     const double start = workMs();
     if (const Status status = renderSamples(frame, options_.sample_count); !status)

@@ -117,14 +117,24 @@ TEST_F(RememberingSequence, OfAnAnimationHasTheSameBytesInPieces)
     ASSERT_EQ(runProgram(LUMICUT_COMPILE, "-q " + quoted("lamp.glb")).exit_code, 0);
     options_.package = folder_ / "lamp.lumi";
     options_.path.clear();
-    auto opened = openScene(options_, {}, statistics_);
-    ASSERT_TRUE(opened) << opened.error().message;
-    opened_.emplace(std::move(*opened));
+    options_.animation = "all";
+    options_.fps = 2; // it is carried far from part to part
+    const auto openAnew = [&]
+    {
+        auto opened = openScene(options_, {}, statistics_);
+        ASSERT_TRUE(opened) << opened.error().message;
+        opened_.emplace(std::move(*opened));
+    };
+    openAnew();
     render("whole", 0, 7);
     EXPECT_NE(frame("whole", "f00.exr"), frame("whole", "f07.exr"));
     for (const uint32_t first : {6u, 0u, 2u, 4u})
         render("pieces", first, first + 1);
     expectWhole("pieces");
+    openAnew(); // by a program that has shown nothing before
+    render("alone", 4, 5);
+    for (const char* name : {"f04.exr", "f05.exr"})
+        EXPECT_EQ(frame("alone", name), frame("whole", name));
 }
 
 /// Pixels of the back wall of the box, a white Lambertian 2.45 m before the camera: by their normals.
