@@ -116,15 +116,16 @@ Capture::Capture(std::filesystem::path path, Renderer& renderer, const Device& d
                  const Settings& settings, std::span<const std::string> layers)
     : path_(std::move(path)), width_(renderer.width()), height_(renderer.height())
 {
-    if (layers.empty() && path_.extension() == ".png")
+    if (!layers.empty())
+    {
+        const std::vector<gpu::LayerSums> sums = renderer.layerSums(device);
+        for (const std::string& name : layers)
+            layers_.push_back(layerOf(name, sums, renderer, device));
+    }
+    else if (path_.extension() == ".png")
         rgb_ = displayed(renderer, device, scene, settings);
-    else if (layers.empty())
+    else
         layers_.push_back(pictureOf(renderer, device));
-    if (layers.empty())
-        return;
-    const std::vector<gpu::LayerSums> sums = renderer.layerSums(device);
-    for (const std::string& name : layers)
-        layers_.push_back(layerOf(name, sums, renderer, device));
 }
 
 uint64_t Capture::byteCount() const

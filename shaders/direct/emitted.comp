@@ -47,14 +47,19 @@ void main()
     Hit hit = loadHit(i);
     vec3 through = vec3(1.0);
     vec3 light = emittedLight(hit, ray.direction, emitter_rays[i].pdf);
-    while (kSceneHasThin && hit.slot != kNone)
-    {
-        through *= thinTransmittance(hit, ray.direction);
-        if (through == vec3(0.0))
-            break;
-        hit = closestHit(ray.origin, ray.direction, Place(hit.t, hitRank(hit.slot)), kInfinity, hash(params.seed, ray.path));
-        light += through * emittedLight(hit, ray.direction, emitter_rays[i].pdf);
-    }
+    bool goes_on = kSceneHasThin && hit.slot != kNone;
+    if (goes_on)
+        do // tests at its end: see lib/bvh.glsl why
+        {
+            through *= thinTransmittance(hit, ray.direction);
+            goes_on = through != vec3(0.0);
+            if (goes_on)
+            {
+                hit = closestHit(ray.origin, ray.direction, Place(hit.t, hitRank(hit.slot)), kInfinity, hash(params.seed, ray.path));
+                light += through * emittedLight(hit, ray.direction, emitter_rays[i].pdf);
+                goes_on = hit.slot != kNone;
+            }
+        } while (goes_on);
     if (light != vec3(0.0))
         radiance[ray.path] += emitter_rays[i].throughput * light;
 }
