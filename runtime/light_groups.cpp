@@ -2,6 +2,7 @@
 
 #include "format/alias_table.h"
 
+#include <algorithm>
 #include <map>
 #include <numeric>
 
@@ -49,12 +50,14 @@ LightGroups groupLights(std::span<const gpu::Light> lights, std::span<const uint
                 clusters[kind == LightKind::kLocal ? clusters_of[i] : 0].push_back(i);
         if (clusters.empty())
             continue;
-        const std::vector<uint32_t>& first = clusters.begin()->second;
-        result.groups.push_back(
-            {.kind = kind,
-             .first_cluster = uint32_t(result.clusters.size()),
-             .cluster_count = uint32_t(clusters.size()),
-             .one_place = clusters.size() == 1 && first.size() == 1 && isPunctual(lights[first[0]])});
+        const bool punctual =
+            std::ranges::all_of(clusters, [&](const auto& entry)
+                                { return entry.second.size() == 1 && isPunctual(lights[entry.second[0]]); });
+        result.groups.push_back({.kind = kind,
+                                 .first_cluster = uint32_t(result.clusters.size()),
+                                 .cluster_count = uint32_t(clusters.size()),
+                                 .punctual = punctual,
+                                 .one_place = punctual && clusters.size() == 1});
         for (const auto& [number, members] : clusters)
             addCluster(result, lights, members);
     }

@@ -18,7 +18,8 @@ struct LightGroup
     LightKind kind;
     uint32_t first_cluster; // its part of LightGroups::clusters
     uint32_t cluster_count; // 1, but for local lights
-    bool one_place;         // a single punctual light: each sample of it is the same
+    bool punctual;          // every cluster is one punctual light: each sample of it is the same
+    bool one_place;         // and there is one cluster
 };
 
 struct LightGroups

@@ -56,14 +56,12 @@ DirectStage::DirectStage(const Device& device, const SceneGpu& scene, uint32_t w
       emitters_(emitterBox(scene)), sample_(device.kernel("direct/sample", scene.constants())),
       emitted_(device.kernel("direct/emitted", scene.constants())),
       emitter_queue_(device, "direct.emitter_queue", width * height * path_count, scratch),
-      shadow_size_(device.array<gpu::QueueSize>("direct.shadow_size", 1)),
-      shadow_rays_(device.texelArray<gpu::ShadowRay>("direct.shadow_rays", width * height * path_count, scratch)),
       emitter_rays_(device.array<gpu::EmitterRay>("direct.emitter_rays", width * height * path_count, scratch)),
       hits_(device.texelArray<gpu::Hit>("direct.hits", width * height * path_count, scratch)),
       clusters_(device.texelArray<gpu::LightCluster>("direct.clusters", countOf(clusters_of_) + 2)),
       picks_(device.texelArray<gpu::LightPick>("direct.picks", std::max<size_t>(scene.lights().size(), 1))),
       densities_(device.array<float>("direct.densities", std::max<size_t>(scene.lights().size(), 1))),
-      rest_size_(device.array<gpu::QueueSize>("direct.rest_size", 1)), has_area_lights_(scene.hasAreaLights()),
+      no_tiles_(device.array<gpu::TileLights>("direct.no_tiles", 1)), has_area_lights_(scene.hasAreaLights()),
       is_noisy_(has_area_lights_ || hasChoice(scene.lights()))
 {
     const uint32_t clusters = countOf(clusters_of_);
@@ -72,16 +70,12 @@ DirectStage::DirectStage(const Device& device, const SceneGpu& scene, uint32_t w
         sample_seen_ = device.kernel("direct/sample", scene.constants(), {{"kKnowsSeen", 1}});
         survey_.emplace(device, scene, clusters, width, height, path_count, scratch);
     }
-    rest_rays_ =
-        device.texelArray<gpu::ShadowRay>("direct.rest_rays", survey_ ? width * height * path_count : 1, scratch);
-    no_tiles_ = device.texelArray<gpu::TileLights>("direct.no_tiles", 1);
 }
 
 uint64_t DirectStage::scratchBytes(const SceneGpu& scene, uint32_t width, uint32_t height, uint32_t path_count)
 {
+    const uint64_t a_point = sizeof(gpu::Ray) + sizeof(gpu::EmitterRay) + sizeof(gpu::Hit);
     const uint32_t clusters = countOf(clusterLights(scene.lights()));
-    const uint64_t a_point =
-        sizeof(gpu::Ray) + (clusters > 1 ? 2 : 1) * sizeof(gpu::ShadowRay) + sizeof(gpu::EmitterRay) + sizeof(gpu::Hit);
     return uint64_t(width) * height * path_count * a_point +
            (clusters > 1 ? LightSurvey::scratchBytes(clusters, width, height, path_count) : 0);
 }
@@ -103,31 +97,35 @@ void DirectStage::record(Recorder& rec, const RayStage& rays, const Input& in)
 {
     const auto scope = rec.scope("direct");
     followLights(rec);
-    const Buffer* tiles = &no_tiles_;
-    if (const auto lamps = std::ranges::find(lights_.groups, LightKind::kLocal, &LightGroup::kind);
-        lamps != lights_.groups.end() && lamps->cluster_count > 1)
-        tiles = &survey_->record(rec, rays,
-                                 {.points = in.points,
-                                  .point_count = in.point_count,
-                                  .clusters = clusters_,
-                                  .picks = picks_,
-                                  .first_cluster = lamps->first_cluster,
-                                  .cluster_count = lamps->cluster_count,
-                                  .first_sample = in.first_sample,
-                                  .seed = in.seed + kSurveySeed});
+    std::vector<const Buffer*> tiles; // by group
+    for (const LightGroup& group : lights_.groups)
+        tiles.push_back(group.cluster_count > 1 ? &recordSurvey(rec, in, group) : &no_tiles_);
     for (uint32_t i = 0; i < in.light_sample_count; ++i)
-        recordSample(rec, rays, in, i, *tiles);
+        recordSample(rec, rays, in, i, tiles);
+}
+
+const Buffer& DirectStage::recordSurvey(Recorder& rec, const Input& in, const LightGroup& group) const
+{
+    return survey_->record(rec, {.points = in.points,
+                                 .point_count = in.point_count,
+                                 .clusters = clusters_,
+                                 .picks = picks_,
+                                 .first_cluster = group.first_cluster,
+                                 .cluster_count = group.cluster_count,
+                                 .first_sample = in.first_sample,
+                                 .seed = in.seed + kSurveySeed});
 }
 
 void DirectStage::recordSample(Recorder& rec, const RayStage& rays, const Input& in, uint32_t light_sample,
-                               const Buffer& tiles) const
+                               std::span<const Buffer* const> tiles) const
 {
     const gpu::EmittedParams emitted{
         .seed = traceSeed(in.seed, in.first_sample * in.light_sample_count + light_sample, ~0u)};
     rays.reset(rec, emitter_queue_.size);
-    for (const LightGroup& group : lights_.groups)
+    for (size_t i = 0; i < lights_.groups.size(); ++i)
     {
-        const bool last = &group == &lights_.groups.back(), several = group.cluster_count > 1;
+        const LightGroup& group = lights_.groups[i];
+        const bool last = i + 1 == lights_.groups.size();
         const gpu::DirectParams params{.point_count = in.point_count,
                                        .first_sample = in.first_sample,
                                        .seed = in.seed,
@@ -136,32 +134,22 @@ void DirectStage::recordSample(Recorder& rec, const RayStage& rays, const Input&
                                        .light_seed = in.seed + uint32_t(group.kind) * kGroupSeed,
                                        .first_cluster = group.first_cluster,
                                        .cluster_count = group.cluster_count,
-                                       .candidate_count = group.one_place ? 1 : in.candidate_count,
+                                       .candidate_count = in.candidate_count,
+                                       .repeats = !group.punctual,
                                        .traces_bsdf_samples = last && has_area_lights_,
                                        .pixel_count = width_ * height_,
                                        .width = width_,
                                        .emitters_low = emitters_.low,
                                        .emitters_high = emitters_.high};
-        rays.reset(rec, shadow_size_);
-        rays.reset(rec, rest_size_);
-        rec.run(several ? sample_seen_ : sample_, in.point_count, params,
+        rec.run(group.cluster_count > 1 ? sample_seen_ : sample_, in.point_count, params,
                 {{"Points", in.points},
-                 {"ShadowQueue", shadow_size_},
-                 {"ShadowRays", shadow_rays_},
+                 {"Radiance", group.one_place ? in.radiance : in.noisy},
                  {"EmitterQueue", emitter_queue_.size},
                  {"Rays", emitter_queue_.rays},
                  {"EmitterRays", emitter_rays_},
                  {"Picks", picks_},
                  {"Clusters", clusters_},
-                 {"Tiles", tiles},
-                 {"RestQueue", rest_size_},
-                 {"RestRays", rest_rays_}});
-        rays.close(rec, shadow_size_);
-        rays.visible(rec, shadow_size_, shadow_rays_, group.one_place ? in.radiance : in.noisy);
-        if (!several)
-            continue;
-        rays.close(rec, rest_size_);
-        rays.visible(rec, rest_size_, rest_rays_, in.noisy);
+                 {"Tiles", *tiles[i]}});
     }
     if (!has_area_lights_)
         return;

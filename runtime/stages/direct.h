@@ -1,6 +1,8 @@
 // Direct light at the shading points: shadow rays to sampled lights, combined with BSDF-sampled rays.
 #pragma once
+#include "runtime/light_groups.h"
 #include "runtime/stages/light_survey.h"
+#include "runtime/stages/rays.h"
 #include "shaders/direct/direct.h"
 
 #include <optional>
@@ -27,9 +29,8 @@ public:
         const Buffer& radiance; // vec3[point_count], grows by the direct light
         const Buffer& noisy;    // likewise, by what is left to chance of it; may be `radiance`
         uint32_t point_count;
-        uint32_t
-            light_sample_count; // per point, for directional, environment and local lights each (those seen, the rest)
-        uint32_t candidate_count; // light samples of which one is chosen for the shadow ray
+        uint32_t light_sample_count; // per point, for directional, environment and local lights each (each set of them)
+        uint32_t candidate_count;    // light samples of which one is chosen for the shadow ray, about
         uint32_t first_sample;
         uint32_t seed;
     };
@@ -38,9 +39,11 @@ public:
 
 private:
     void followLights(Recorder& rec);
-    /// @param tiles gpu::TileLights[]
+    /// @return gpu::TileLights[]
+    const Buffer& recordSurvey(Recorder& rec, const Input& in, const LightGroup& group) const;
+    /// @param tiles gpu::TileLights[], by group
     void recordSample(Recorder& rec, const RayStage& rays, const Input& in, uint32_t light_sample,
-                      const Buffer& tiles) const;
+                      std::span<const Buffer* const> tiles) const;
 
     const SceneGpu& scene_;
     std::vector<uint32_t> clusters_of_; // by light
@@ -50,8 +53,7 @@ private:
     EmitterBox emitters_;
     Kernel sample_, sample_seen_, emitted_; // sample_seen_: of lamps in several clusters
     RayQueue emitter_queue_;
-    Buffer shadow_size_, shadow_rays_, emitter_rays_, hits_, clusters_, picks_, densities_;
-    Buffer rest_size_, rest_rays_, no_tiles_;
+    Buffer emitter_rays_, hits_, clusters_, picks_, densities_, no_tiles_;
     std::optional<LightSurvey> survey_; // where there are several clusters
     bool has_area_lights_, is_noisy_;
 };

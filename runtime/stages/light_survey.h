@@ -2,7 +2,6 @@
 #pragma once
 #include "runtime/light_groups.h"
 #include "runtime/scene_gpu.h"
-#include "runtime/stages/rays.h"
 #include "shaders/direct/survey.h"
 
 class LightSurvey
@@ -18,17 +17,17 @@ public:
     {
         const Buffer& points; // gpu::ShadingPoint[point_count]
         uint32_t point_count;
-        const Buffer& clusters; // gpu::LightCluster[]
-        const Buffer& picks;    // gpu::LightPick[]
-        uint32_t first_cluster, cluster_count;
+        const Buffer& clusters;                // gpu::LightCluster[]
+        const Buffer& picks;                   // gpu::LightPick[]
+        uint32_t first_cluster, cluster_count; // above 0
         uint32_t first_sample;
         uint32_t seed;
     };
     /// @return gpu::TileLights[], tiles of gpu::kSurveySide pixels from left to right and down, those of each path of a pixel
-    const Buffer& record(Recorder& rec, const RayStage& rays, const Input& in) const;
+    const Buffer& record(Recorder& rec, const Input& in) const;
 
 private:
     uint32_t width_, height_, tile_count_;
-    Kernel survey_, tally_;
-    Buffer queue_size_, shadow_rays_, arrived_, tiles_;
+    Kernel survey_, tally_, divide_;
+    Buffer arrived_, sums_, tiles_;
 };

@@ -6,9 +6,8 @@
 GPU_NAMESPACE_BEGIN
 
 // Lights come in three groups, suns, skies and lamps: their powers do not compare, and a sun that is in the shade must not
-// take the shadow ray of the sky. Each group gets its own. Lamps come in clusters: where there are several, a lamp behind a wall
-// must not take the shadow ray of one that is seen. Tiles of pixels tell which are seen (survey.h); those get a ray, and so do
-// the rest, because a tile cannot know for sure.
+// take the shadow ray of the sky. Each group gets its own. Lamps come in clusters: where there are several, tiles of pixels tell
+// which are seen (survey.h).
 struct DirectParams
 {
     uint point_count;
@@ -19,14 +18,15 @@ struct DirectParams
     uint light_seed;         // the same for all dispatches of a group
     uint first_cluster;      // of the group
     uint cluster_count;
-    uint candidate_count;     // light samples of which one gets the shadow ray
+    uint candidate_count; // light samples at most, one of which gets the shadow ray
+    uint repeats;         // 1: a cluster gives several of them where there are few clusters; 0: each would be the same
     uint traces_bsdf_samples; // 1: this dispatch also sends the BSDF-sampled rays
     uint pixel_count;
     uint width;        // of the picture, pixels
     vec3 emitters_low; // metres: what does not pass the box between them meets no emitter
     vec3 emitters_high;
 };
-GPU_SIZE(DirectParams, 72);
+GPU_SIZE(DirectParams, 76);
 
 struct EmittedParams
 {

@@ -2,10 +2,11 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "shaders/direct/survey.h"
+#include "shaders/lib/trace.glsl"
 #include "shaders/lib/unshadowed.glsl"
 
-// Sends shadow rays from random pixels of a tile to random lights of a cluster. One thread per ray; [x, y] of its result is the
-// brightness that arrives and that would arrive if nothing were in the way.
+// Sends shadow rays from random pixels of a tile to random lights of a cluster. One thread per ray; its result is the brightness
+// that arrives and that would arrive if nothing were in the way.
 
 layout(local_size_x = kRaysGroupSize) in;
 layout(push_constant, scalar) uniform Params { SurveyParams params; };
@@ -13,9 +14,7 @@ layout(push_constant, scalar) uniform Params { SurveyParams params; };
 layout(set = 1, binding = 0) uniform usamplerBuffer Points;
 layout(set = 1, binding = 1) uniform usamplerBuffer Clusters;
 layout(set = 1, binding = 2) uniform usamplerBuffer Picks;
-layout(set = 1, binding = 3, scalar) buffer ShadowQueue { QueueSize shadow_queue; };
-layout(set = 1, binding = 4, scalar) writeonly buffer ShadowRays { ShadowRay shadow_rays[]; };
-layout(set = 1, binding = 5, scalar) writeonly buffer Arrived { vec3 arrived[]; }; // by ray, cluster, tile
+layout(set = 1, binding = 3, scalar) writeonly buffer Arrived { vec2 arrived[]; }; // by ray, cluster, tile
 #include "shaders/lib/light_cluster.glsl"
 #include "shaders/lib/point.glsl"
 
@@ -39,7 +38,7 @@ void main()
         return;
     Sampler s = Sampler(hash(params.seed, tile * params.cluster_count + cluster), params.first_sample * kSurveyRays + ray, 0u);
     uint path = pointOf(tile, nextPair(s));
-    vec3 result = vec3(0.0);
+    vec2 result = vec2(0.0);
     if (path < params.point_count && loadPoint(path).slot != kNone)
     {
         ShadingPoint point = loadPoint(path);
@@ -47,12 +46,12 @@ void main()
         if (hasDensity(v.bsdf))
         {
             LightSample light = sampleCluster(loadCluster(params.first_cluster + cluster), v.surface.position, nextLightDraws(s));
-            result.y = luminance(point.throughput * unshadowed(v, light));
-            if (result.y > 0.0 && !isinf(result.y))
-                shadow_rays[atomicAdd(shadow_queue.count, 1u)] =
-                    ShadowRay(shadowRay(v.surface, light, thread), vec3(result.y, 0.0, 0.0), 0.0);
-            else
-                result.y = 0.0;
+            float bright = luminance(point.throughput * unshadowed(v, light));
+            if (bright > 0.0 && !isinf(bright))
+            {
+                Ray shadow = shadowRay(v.surface, light, thread);
+                result = bright * vec2(luminance(transmittance(shadow.origin, shadow.direction, shadow.t_max)), 1.0);
+            }
         }
     }
     arrived[thread] = result;

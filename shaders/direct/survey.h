@@ -29,15 +29,19 @@ struct LightCluster // lights that are near each other, so that a surface mostly
 };
 GPU_SIZE(LightCluster, 16);
 
-/// What a tile knows of the clusters. Those that a ray has reached are "seen", the others are "the rest".
+// What a tile knows of a cluster: all of its rays have arrived, some have, or none. Each set gets a shadow ray of its own: what
+// surely arrives adds no noise to what may be hidden, and no lamp behind a wall takes the ray of one that is seen.
+GPU_CONST uint kSureLights = 0u, kSeenLights = 1u, kRestLights = 2u, kLightSets = 3u;
+
+/// What a tile knows of the clusters.
 struct TileLights
 {
-    float seen
-        [kMostClusters]; // cumulative probability of choosing a cluster among the seen ones, ends at 1; 0: there is none
-    float rest[kMostClusters];    // likewise among the rest
-    float visible[kMostClusters]; // fraction of a seen cluster's light that arrives; 1 for the rest
+    uint sure;                        // bit i: cluster i is in that set; the others are in the last one
+    uint seen;                        // likewise
+    uint visible[kMostClusters / 4u]; // the fraction of a seen cluster's light that arrives; four in a word, of 255
+    float ends[kMostClusters];        // cumulative probabilities of choosing a cluster of its set, by what arrives
 };
-GPU_SIZE(TileLights, 192);
+GPU_SIZE(TileLights, 88);
 
 struct SurveyParams
 {
@@ -56,8 +60,9 @@ struct TallyParams
 {
     uint tile_count;
     uint cluster_count;
+    uint columns, rows; // of tiles; those of other paths through the same pixels follow
 };
-GPU_SIZE(TallyParams, 8);
+GPU_SIZE(TallyParams, 16);
 
 GPU_NAMESPACE_END
 #endif
