@@ -97,35 +97,30 @@ void DirectStage::record(Recorder& rec, const RayStage& rays, const Input& in)
 {
     const auto scope = rec.scope("direct");
     followLights(rec);
-    std::vector<const Buffer*> tiles; // by group
-    for (const LightGroup& group : lights_.groups)
-        tiles.push_back(group.cluster_count > 1 ? &recordSurvey(rec, in, group) : &no_tiles_);
+    const Buffer* tiles = &no_tiles_;
+    if (const auto lamps = std::ranges::find(lights_.groups, LightKind::kLocal, &LightGroup::kind);
+        lamps != lights_.groups.end() && lamps->cluster_count > 1)
+        tiles = &survey_->record(rec, {.points = in.points,
+                                       .point_count = in.point_count,
+                                       .clusters = clusters_,
+                                       .picks = picks_,
+                                       .first_cluster = lamps->first_cluster,
+                                       .cluster_count = lamps->cluster_count,
+                                       .first_sample = in.first_sample,
+                                       .seed = in.seed + kSurveySeed});
     for (uint32_t i = 0; i < in.light_sample_count; ++i)
-        recordSample(rec, rays, in, i, tiles);
-}
-
-const Buffer& DirectStage::recordSurvey(Recorder& rec, const Input& in, const LightGroup& group) const
-{
-    return survey_->record(rec, {.points = in.points,
-                                 .point_count = in.point_count,
-                                 .clusters = clusters_,
-                                 .picks = picks_,
-                                 .first_cluster = group.first_cluster,
-                                 .cluster_count = group.cluster_count,
-                                 .first_sample = in.first_sample,
-                                 .seed = in.seed + kSurveySeed});
+        recordSample(rec, rays, in, i, *tiles);
 }
 
 void DirectStage::recordSample(Recorder& rec, const RayStage& rays, const Input& in, uint32_t light_sample,
-                               std::span<const Buffer* const> tiles) const
+                               const Buffer& tiles) const
 {
     const gpu::EmittedParams emitted{
         .seed = traceSeed(in.seed, in.first_sample * in.light_sample_count + light_sample, ~0u)};
     rays.reset(rec, emitter_queue_.size);
-    for (size_t i = 0; i < lights_.groups.size(); ++i)
+    for (const LightGroup& group : lights_.groups)
     {
-        const LightGroup& group = lights_.groups[i];
-        const bool last = i + 1 == lights_.groups.size();
+        const bool last = &group == &lights_.groups.back();
         const gpu::DirectParams params{.point_count = in.point_count,
                                        .first_sample = in.first_sample,
                                        .seed = in.seed,
@@ -149,7 +144,7 @@ void DirectStage::recordSample(Recorder& rec, const RayStage& rays, const Input&
                  {"EmitterRays", emitter_rays_},
                  {"Picks", picks_},
                  {"Clusters", clusters_},
-                 {"Tiles", *tiles[i]}});
+                 {"Tiles", tiles}});
     }
     if (!has_area_lights_)
         return;

@@ -39,11 +39,9 @@ public:
 
 private:
     void followLights(Recorder& rec);
-    /// @return gpu::TileLights[]
-    const Buffer& recordSurvey(Recorder& rec, const Input& in, const LightGroup& group) const;
-    /// @param tiles gpu::TileLights[], by group
+    /// @param tiles gpu::TileLights[]
     void recordSample(Recorder& rec, const RayStage& rays, const Input& in, uint32_t light_sample,
-                      std::span<const Buffer* const> tiles) const;
+                      const Buffer& tiles) const;
 
     const SceneGpu& scene_;
     std::vector<uint32_t> clusters_of_; // by light

@@ -18,8 +18,8 @@ struct DirectParams
     uint light_seed;         // the same for all dispatches of a group
     uint first_cluster;      // of the group
     uint cluster_count;
-    uint candidate_count; // light samples at most, one of which gets the shadow ray
-    uint repeats;         // 1: a cluster gives several of them where there are few clusters; 0: each would be the same
+    uint candidate_count;     // light samples at most, one of which gets the shadow ray
+    uint repeats;             // 1: those of one cluster differ, so that several of it help; 0: punctual lights
     uint traces_bsdf_samples; // 1: this dispatch also sends the BSDF-sampled rays
     uint pixel_count;
     uint width;        // of the picture, pixels

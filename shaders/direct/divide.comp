@@ -12,8 +12,9 @@ layout(set = 1, binding = 0, scalar) readonly buffer Sums { vec2 sums[]; }; // b
 layout(set = 1, binding = 1, scalar) writeonly buffer Tiles { TileLights tiles[]; };
 
 const float kAround = 0.125; // what a tile beside this one counts
-const float kEvenly = 0.03; // part of a set's candidates that is shared out evenly: at the pixels that were asked the light of a cluster
-                           // may come aslant, or be all but hidden
+// Part of a set's candidates that is shared out evenly: at the pixels that were asked the light of a cluster may come aslant, or be
+// all but hidden. None: rare bright pixels. With .1 in all sets 4 candidates of 16 lamps did a little less than 4 samples.
+const vec3 kEvenly = vec3(0.03, 0.03, 0.1);
 
 /// Brightness of the cluster's light that arrives at the tiles around, and that would if nothing were in the way.
 vec2 lightAround(uint cluster, uint tile)

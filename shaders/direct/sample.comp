@@ -131,7 +131,6 @@ void main()
     if (point.slot == kNone)
         return;
     PathVertex v = vertexAt(point);
-    Surface s = v.surface;
     if (!hasDensity(v.bsdf))
         return;
     uint index = params.first_sample * params.light_sample_count + params.light_sample;

@@ -29,8 +29,9 @@ struct LightCluster // lights that are near each other, so that a surface mostly
 };
 GPU_SIZE(LightCluster, 16);
 
-// What a tile knows of a cluster: all of its rays have arrived, some have, or none. Each set gets a shadow ray of its own: what
-// surely arrives adds no noise to what may be hidden, and no lamp behind a wall takes the ray of one that is seen.
+// What a tile knows of a cluster: all of its rays have arrived; some have, or some of those of a tile beside; or none. A set's shadow
+// ray is its own: what surely arrives adds no noise to what may be hidden, and no lamp behind a wall takes the ray of one that is
+// seen.
 GPU_CONST uint kSureLights = 0u, kSeenLights = 1u, kRestLights = 2u, kLightSets = 3u;
 
 /// What a tile knows of the clusters.
