@@ -53,7 +53,7 @@ Result<OpenedDevice> openDevice(const PlayerOptions& options, std::span<const ch
     const auto index = selectDevice(devices, options.device);
     if (!index)
         return index.error();
-    auto device = Device::create(*instance, *index, !window_extensions.empty());
+    auto device = Device::create(*instance, *index, {.present = !window_extensions.empty()});
     if (!device)
         return device.error();
     return OpenedDevice{std::move(*instance), std::move(*device),

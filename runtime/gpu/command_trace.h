@@ -5,8 +5,9 @@
 /// A dispatch, fill, copy or write.
 struct CommandCost
 {
-    std::string name;  // of the kernel, or "fill", "copy", "write"
-    std::string scope; // the innermost
+    std::string name;                     // of the kernel, or "fill", "copy", "write"
+    std::string scope;                    // the innermost
+    VkPipeline pipeline = VK_NULL_HANDLE; // of a dispatch
     uint32_t groups = 0;
     uint64_t bytes = 0; // of the buffers that it names, each as a whole
     double gap_ms = 0;  // from the end of the command before to its begin

@@ -9,7 +9,7 @@
 #include <fstream>
 #include <iterator>
 
-Result<std::unique_ptr<Device>> Device::create(const Instance& instance, uint32_t index, bool present)
+Result<std::unique_ptr<Device>> Device::create(const Instance& instance, uint32_t index, const DeviceUse& use)
 {
     std::unique_ptr<Device> device(new Device);
     device->instance_ = instance;
@@ -50,11 +50,19 @@ Result<std::unique_ptr<Device>> Device::create(const Instance& instance, uint32_
     VkPhysicalDeviceFeatures offered;
     vkGetPhysicalDeviceFeatures(device->physical_, &offered);
     device->samples_blocks_ = offered.textureCompressionBC == VK_TRUE && !device->isCpu();
+    VkPhysicalDevicePipelineExecutablePropertiesFeaturesKHR statistics{
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PIPELINE_EXECUTABLE_PROPERTIES_FEATURES_KHR,
+        .pNext = &f12,
+        .pipelineExecutableInfo = VK_TRUE};
+    device->keeps_statistics_ = use.kernel_statistics && instance.devices()[index].tells_statistics;
     const VkPhysicalDeviceFeatures2 features{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2,
-                                             .pNext = &f12,
+                                             .pNext =
+                                                 device->keeps_statistics_ ? static_cast<void*>(&statistics) : &f12,
                                              .features = {.textureCompressionBC = offered.textureCompressionBC}};
     std::vector<const char*> extensions{VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME};
-    if (present)
+    if (device->keeps_statistics_)
+        extensions.push_back(VK_KHR_PIPELINE_EXECUTABLE_PROPERTIES_EXTENSION_NAME);
+    if (use.present)
         extensions.push_back(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
     const VkDeviceCreateInfo info{
         .sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
@@ -289,4 +297,36 @@ Kernel Device::createKernel(const KernelCode& code, std::vector<ConstantValue> c
     ++pipeline_count_;
     pipelines_->build(kernel.state_, std::move(constants));
     return kernel;
+}
+
+std::vector<std::string> Device::statistics(VkPipeline pipeline) const
+{
+    const auto get_executables = PFN_vkGetPipelineExecutablePropertiesKHR(
+        keeps_statistics_ ? vkGetDeviceProcAddr(device_, "vkGetPipelineExecutablePropertiesKHR") : nullptr);
+    const auto get_statistics =
+        PFN_vkGetPipelineExecutableStatisticsKHR(vkGetDeviceProcAddr(device_, "vkGetPipelineExecutableStatisticsKHR"));
+    if (!get_executables || !get_statistics || !pipeline)
+        return {};
+    const VkPipelineInfoKHR info{.sType = VK_STRUCTURE_TYPE_PIPELINE_INFO_KHR, .pipeline = pipeline};
+    uint32_t executable_count = 0;
+    vulkanCheck(get_executables(device_, &info, &executable_count, nullptr));
+    std::vector<std::string> texts;
+    for (uint32_t i = 0; i < executable_count; ++i)
+    {
+        const VkPipelineExecutableInfoKHR executable{
+            .sType = VK_STRUCTURE_TYPE_PIPELINE_EXECUTABLE_INFO_KHR, .pipeline = pipeline, .executableIndex = i};
+        uint32_t count = 0;
+        vulkanCheck(get_statistics(device_, &executable, &count, nullptr));
+        std::vector<VkPipelineExecutableStatisticKHR> statistics(
+            count, {.sType = VK_STRUCTURE_TYPE_PIPELINE_EXECUTABLE_STATISTIC_KHR});
+        vulkanCheck(get_statistics(device_, &executable, &count, statistics.data()));
+        for (const VkPipelineExecutableStatisticKHR& s : statistics)
+            texts.push_back(s.format == VK_PIPELINE_EXECUTABLE_STATISTIC_FORMAT_FLOAT64_KHR
+                                ? fmt::format("{} {:.3g}", s.name, s.value.f64)
+                                : fmt::format("{} {}", s.name,
+                                              s.format == VK_PIPELINE_EXECUTABLE_STATISTIC_FORMAT_BOOL32_KHR
+                                                  ? s.value.b32
+                                                  : s.value.u64));
+    }
+    return texts;
 }

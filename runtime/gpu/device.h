@@ -17,11 +17,18 @@
 #include <string_view>
 #include <vector>
 
+/// What a device is opened for, beside running kernels.
+struct DeviceUse
+{
+    bool present = false;           // to windows
+    bool kernel_statistics = false; // Device::statistics()
+};
+
 class Device
 {
 public:
     /// @param index into Instance::devices(); the device must lack nothing
-    static Result<std::unique_ptr<Device>> create(const Instance& instance, uint32_t index, bool present);
+    static Result<std::unique_ptr<Device>> create(const Instance& instance, uint32_t index, const DeviceUse& use = {});
     ~Device();
     Device(const Device&) = delete;
     Device& operator=(const Device&) = delete;
@@ -108,6 +115,10 @@ public:
     bool samplesBlocks() const { return samples_blocks_; }
     /// The kernel's pipeline; waits until it is built.
     VkPipeline pipeline(const Kernel& kernel) const { return pipelines_->wait(*kernel.state_); }
+    bool keepsStatistics() const { return keeps_statistics_; }
+    /// What the driver says of a kernel's machine code, as "Register Count 64", in its own words; empty where it says nothing, or
+    /// the device was not opened for it.
+    std::vector<std::string> statistics(VkPipeline pipeline) const;
     /// Pipelines that are not being built yet never are. For a program that ends without closing the device.
     void stopBuilding() { pipelines_->stop(); }
     /// Milliseconds spent waiting for pipelines so far.
@@ -164,5 +175,6 @@ private:
     std::unique_ptr<PipelineBuilder> pipelines_;
     mutable std::map<std::pair<std::string, std::vector<ConstantValue>>, Kernel> kernels_; // by name and constants
     mutable Buffer staging_; // kept: drivers take longer to lock such memory in place than to copy what goes through it
+    bool keeps_statistics_ = false;
     mutable uint64_t pipeline_count_ = 0, allocated_bytes_ = 0, allocation_count_ = 0;
 };

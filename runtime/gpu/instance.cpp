@@ -234,6 +234,7 @@ std::vector<DeviceInfo> Instance::devices() const
             .name = properties.properties.deviceName,
             .kind = kindName(properties.properties.deviceType),
             .driver = fmt::format("{} {}", driver.driverName, driver.driverInfo),
+            .tells_statistics = hasExtension(state_->devices[i], VK_KHR_PIPELINE_EXECUTABLE_PROPERTIES_EXTENSION_NAME),
             .lacks = missingFeatures(state_->devices[i], properties.properties),
         };
         for (uint32_t h = 0; h < memory.memoryHeapCount; ++h)

@@ -23,6 +23,7 @@ struct DeviceInfo
     std::string kind; // "discrete", "integrated", "cpu", "virtual", "other"
     std::string driver;
     uint64_t memory_bytes = 0;      // largest device-local heap
+    bool tells_statistics = false;  // of kernels (VK_KHR_pipeline_executable_properties)
     std::vector<std::string> lacks; // each required feature that is missing, with its reason; empty: suitable
 };
 

@@ -304,6 +304,7 @@ void Recorder::endTraced(const Command& command)
     if (!trace_)
         return;
     trace_->timestamps_.back().last = timestamp();
+    trace_->commands_.back().pipeline = command.pipeline;
     trace_->commands_.back().groups = command.groups;
     if (trace_->alone_)
     {

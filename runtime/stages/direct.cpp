@@ -52,9 +52,10 @@ EmitterBox emitterBox(const SceneGpu& scene)
 
 DirectStage::DirectStage(const Device& device, const SceneGpu& scene, uint32_t width, uint32_t height,
                          uint32_t path_count, const Scratch& scratch)
-    : scene_(scene), clusters_of_(clusterLights(scene.lights())), width_(width), height_(height),
+    : device_(device), scene_(scene), clusters_of_(clusterLights(scene.lights())), width_(width), height_(height),
       emitters_(emitterBox(scene)), sample_(device.kernel("direct/sample", scene.constants())),
       emitted_(device.kernel("direct/emitted", scene.constants())),
+      shadow_count_(device.array<gpu::QueueSize>("direct.shadow_count", 1)),
       emitter_queue_(device, "direct.emitter_queue", width * height * path_count, scratch),
       emitter_rays_(device.array<gpu::EmitterRay>("direct.emitter_rays", width * height * path_count, scratch)),
       hits_(device.texelArray<gpu::Hit>("direct.hits", width * height * path_count, scratch)),
@@ -97,6 +98,8 @@ void DirectStage::record(Recorder& rec, const RayStage& rays, const Input& in)
 {
     const auto scope = rec.scope("direct");
     followLights(rec);
+    if (rays.counts())
+        rec.clear(shadow_count_);
     const Buffer* tiles = &no_tiles_;
     if (const auto lamps = std::ranges::find(lights_.groups, LightKind::kLocal, &LightGroup::kind);
         lamps != lights_.groups.end() && lamps->cluster_count > 1)
@@ -107,9 +110,19 @@ void DirectStage::record(Recorder& rec, const RayStage& rays, const Input& in)
                                        .first_cluster = lamps->first_cluster,
                                        .cluster_count = lamps->cluster_count,
                                        .first_sample = in.first_sample,
-                                       .seed = in.seed + kSurveySeed});
+                                       .seed = in.seed + kSurveySeed,
+                                       .shadow_count = shadow_count_,
+                                       .counts_rays = rays.counts()});
     for (uint32_t i = 0; i < in.light_sample_count; ++i)
         recordSample(rec, rays, in, i, *tiles);
+    rays.count(rec, shadow_count_, true);
+}
+
+Kernel DirectStage::sampleKernel(bool knows_seen, bool counts_rays) const
+{
+    if (counts_rays)
+        return device_.kernel("direct/sample", scene_.constants(), {{"kKnowsSeen", knows_seen}, {"kCountsRays", 1}});
+    return knows_seen ? sample_seen_ : sample_;
 }
 
 void DirectStage::recordSample(Recorder& rec, const RayStage& rays, const Input& in, uint32_t light_sample,
@@ -136,7 +149,7 @@ void DirectStage::recordSample(Recorder& rec, const RayStage& rays, const Input&
                                        .width = width_,
                                        .emitters_low = emitters_.low,
                                        .emitters_high = emitters_.high};
-        rec.run(group.cluster_count > 1 ? sample_seen_ : sample_, in.point_count, params,
+        rec.run(sampleKernel(group.cluster_count > 1, rays.counts()), in.point_count, params,
                 {{"Points", in.points},
                  {"Radiance", group.one_place ? in.radiance : in.noisy},
                  {"EmitterQueue", emitter_queue_.size},
@@ -144,7 +157,8 @@ void DirectStage::recordSample(Recorder& rec, const RayStage& rays, const Input&
                  {"EmitterRays", emitter_rays_},
                  {"Picks", picks_},
                  {"Clusters", clusters_},
-                 {"Tiles", tiles}});
+                 {"Tiles", tiles},
+                 {"ShadowCount", shadow_count_}});
     }
     if (!has_area_lights_)
         return;

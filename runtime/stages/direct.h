@@ -39,10 +39,12 @@ public:
 
 private:
     void followLights(Recorder& rec);
+    Kernel sampleKernel(bool knows_seen, bool counts_rays) const;
     /// @param tiles gpu::TileLights[]
     void recordSample(Recorder& rec, const RayStage& rays, const Input& in, uint32_t light_sample,
                       const Buffer& tiles) const;
 
+    const Device& device_;
     const SceneGpu& scene_;
     std::vector<uint32_t> clusters_of_; // by light
     LightGroups lights_;
@@ -50,6 +52,7 @@ private:
     uint32_t width_, height_;
     EmitterBox emitters_;
     Kernel sample_, sample_seen_, emitted_; // sample_seen_: of lamps in several clusters
+    Buffer shadow_count_;                   // gpu::QueueSize: rays that its kernels have traced, where rays are counted
     RayQueue emitter_queue_;
     Buffer emitter_rays_, hits_, clusters_, picks_, densities_, no_tiles_;
     std::optional<LightSurvey> survey_; // where there are several clusters

@@ -15,7 +15,7 @@ uint32_t tileCount(uint32_t width, uint32_t height, uint32_t path_count)
 
 LightSurvey::LightSurvey(const Device& device, const SceneGpu& scene, uint32_t most_clusters, uint32_t width,
                          uint32_t height, uint32_t path_count, const Scratch& scratch)
-    : width_(width), height_(height), tile_count_(tileCount(width, height, path_count)),
+    : device_(device), scene_(scene), width_(width), height_(height), tile_count_(tileCount(width, height, path_count)),
       survey_(device.kernel("direct/survey", scene.constants())), tally_(device.kernel("direct/tally")),
       divide_(device.kernel("direct/divide")),
       arrived_(device.array<gpu::vec2>("direct.survey_arrived",
@@ -33,7 +33,9 @@ uint64_t LightSurvey::scratchBytes(uint32_t most_clusters, uint32_t width, uint3
 
 const Buffer& LightSurvey::record(Recorder& rec, const Input& in) const
 {
-    rec.run(survey_, tile_count_ * in.cluster_count * gpu::kSurveyRays,
+    const Kernel& survey =
+        in.counts_rays ? device_.kernel("direct/survey", scene_.constants(), {{"kCountsRays", 1}}) : survey_;
+    rec.run(survey, tile_count_ * in.cluster_count * gpu::kSurveyRays,
             gpu::SurveyParams{.point_count = in.point_count,
                               .pixel_count = width_ * height_,
                               .width = width_,
@@ -42,7 +44,11 @@ const Buffer& LightSurvey::record(Recorder& rec, const Input& in) const
                               .cluster_count = in.cluster_count,
                               .first_sample = in.first_sample,
                               .seed = in.seed},
-            {{"Points", in.points}, {"Clusters", in.clusters}, {"Picks", in.picks}, {"Arrived", arrived_}});
+            {{"Points", in.points},
+             {"Clusters", in.clusters},
+             {"Picks", in.picks},
+             {"Arrived", arrived_},
+             {"ShadowCount", in.shadow_count}});
     const gpu::TallyParams tally{.tile_count = tile_count_,
                                  .cluster_count = in.cluster_count,
                                  .columns = tilesAlong(width_),

@@ -22,11 +22,15 @@ public:
         uint32_t first_cluster, cluster_count; // above 0
         uint32_t first_sample;
         uint32_t seed;
+        const Buffer& shadow_count; // gpu::QueueSize, grows by its rays where
+        bool counts_rays;
     };
     /// @return gpu::TileLights[], tiles of gpu::kSurveySide pixels from left to right and down, those of each path of a pixel
     const Buffer& record(Recorder& rec, const Input& in) const;
 
 private:
+    const Device& device_;
+    const SceneGpu& scene_;
     uint32_t width_, height_, tile_count_;
     Kernel survey_, tally_, divide_;
     Buffer arrived_, sums_, tiles_;

@@ -40,7 +40,8 @@ void RayTally::note(Recorder& rec, uint32_t ray_count)
 
 std::vector<RayTally::Entry> RayTally::entries() const
 {
-    const auto sizes = device_.download<gpu::QueueSize>(sizes_, queues_.size());
+    const auto sizes =
+        queues_.empty() ? std::vector<gpu::QueueSize>() : device_.download<gpu::QueueSize>(sizes_, queues_.size());
     std::vector<Entry> noted = known_;
     for (size_t i = 0; i < queues_.size(); ++i)
     {
@@ -85,10 +86,10 @@ void RayStage::closest(Recorder& rec, const RayQueue& queue, const Buffer& hits,
                     {{"Queue", queue.size}, {"Rays", queue.rays}, {"Hits", hits}});
 }
 
-void RayStage::count(Recorder& rec, const Buffer& size) const
+void RayStage::count(Recorder& rec, const Buffer& size, bool any_hit) const
 {
     if (tally_)
-        tally_->note(rec, size, false);
+        tally_->note(rec, size, any_hit);
 }
 
 void RayStage::count(Recorder& rec, uint32_t ray_count) const

@@ -58,8 +58,9 @@ public:
     void visible(Recorder& rec, const Buffer& size, const Buffer& shadow_rays, const Buffer& radiance) const;
 
     /// Notes rays that another stage traces itself. @param size gpu::QueueSize: their count
-    void count(Recorder& rec, const Buffer& size) const;
+    void count(Recorder& rec, const Buffer& size, bool any_hit = false) const;
     void count(Recorder& rec, uint32_t ray_count) const;
+    bool counts() const { return tally_ != nullptr; }
     /// Notes every queue that is traced from now on; null ends that.
     void countInto(RayTally* tally) { tally_ = tally; }
 

@@ -15,8 +15,11 @@ layout(set = 1, binding = 0) uniform usamplerBuffer Points;
 layout(set = 1, binding = 1) uniform usamplerBuffer Clusters;
 layout(set = 1, binding = 2) uniform usamplerBuffer Picks;
 layout(set = 1, binding = 3, scalar) writeonly buffer Arrived { vec2 arrived[]; }; // by ray, cluster, tile
+layout(set = 1, binding = 4, scalar) buffer ShadowCount { QueueSize shadow_count; };
 #include "shaders/lib/light_cluster.glsl"
 #include "shaders/lib/point.glsl"
+
+layout(constant_id = 4) const bool kCountsRays = false; // for measurements
 
 /// A random point of the tile.
 uint pointOf(uint tile, vec2 u)
@@ -49,6 +52,8 @@ void main()
             float bright = luminance(point.throughput * unshadowed(v, light));
             if (bright > 0.0 && !isinf(bright))
             {
+                if (kCountsRays)
+                    atomicAdd(shadow_count.count, 1u);
                 Ray shadow = shadowRay(v.surface, light, thread);
                 result = bright * vec2(luminance(transmittance(shadow.origin, shadow.direction, shadow.t_max)), 1.0);
             }

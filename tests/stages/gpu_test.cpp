@@ -29,7 +29,7 @@ const Result<std::unique_ptr<Device>>& openedDevice()
             const auto index = selectDevice(instance->devices(), "");
             if (!index)
                 return index.error();
-            auto device = Device::create(*instance, *index, false);
+            auto device = Device::create(*instance, *index);
             std::atexit(stopBuilding); // the driver ends after that, and must not be busy
             return device;
         }());

@@ -14,7 +14,7 @@ std::unique_ptr<Device> newDevice()
     check(bool(instance), "{}", instance ? "" : instance.error().message);
     const auto index = selectDevice(instance->devices(), "");
     check(bool(index), "{}", index ? "" : index.error().message);
-    auto device = Device::create(*instance, *index, false);
+    auto device = Device::create(*instance, *index);
     check(bool(device), "{}", device ? "" : device.error().message);
     return std::move(*device);
 }

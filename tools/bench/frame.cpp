@@ -191,7 +191,7 @@ void print(const FrameBenchOptions& options, const OpenedPackage& opened, const 
 
 Status benchFrame(const FrameBenchOptions& options)
 {
-    const auto opened = openPackage(options);
+    const auto opened = openPackage(options, options.kernels);
     if (!opened)
         return opened.error();
     if (const Status status = Renderer::checkSize(*opened->device, options.width, options.height); !status)

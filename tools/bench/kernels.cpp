@@ -50,6 +50,8 @@ CommandSamples CommandSamples::measure(const Device& device, Recorder& rec, cons
     };
     CommandSamples samples(device.isCpu());
     samples.commands_ = trace(false, first);
+    for (Command& command : samples.commands_)
+        command.statistics = fmt::format("{}", fmt::join(device.statistics(command.last.pipeline), ", "));
     if (!samples.is_cpu_)
         return samples;
     const std::vector<Command> alone = trace(true, first + count);
@@ -65,21 +67,22 @@ void CommandSamples::printSums() const
         std::string name;
         uint32_t count = 0;
         double ms = 0, cpu_ms = 0;
+        std::string statistics;
     };
     std::vector<Sum> sums;
     for (const Command& command : commands_)
     {
         auto sum = std::ranges::find(sums, command.last.name, &Sum::name);
         if (sum == sums.end())
-            sum = sums.insert(sums.end(), Sum{.name = command.last.name});
+            sum = sums.insert(sums.end(), Sum{.name = command.last.name, .statistics = command.statistics});
         ++sum->count;
         sum->ms += median(command.ms);
         sum->cpu_ms += median(command.cpu_ms);
     }
     std::ranges::stable_sort(sums, std::greater{}, is_cpu_ ? &Sum::cpu_ms : &Sum::ms);
     for (const Sum& sum : sums)
-        fmt::print("  {:<40} {:>8} {:>19.3f} {}\n", sum.name, sum.count, sum.ms,
-                   is_cpu_ ? fmt::format("{:10.3f}", sum.cpu_ms) : "");
+        fmt::print("  {:<40} {:>8} {:>19.3f} {}{}\n", sum.name, sum.count, sum.ms,
+                   is_cpu_ ? fmt::format("{:10.3f}", sum.cpu_ms) : "", sum.statistics);
 }
 
 void CommandSamples::print() const
@@ -117,6 +120,8 @@ nlohmann::ordered_json CommandSamples::json() const
         };
         if (is_cpu_)
             entry["cpu_p50_ms"] = median(command.cpu_ms);
+        if (!command.statistics.empty())
+            entry["driver"] = command.statistics;
         list.push_back(entry);
     }
     return list;

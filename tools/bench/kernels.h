@@ -23,6 +23,7 @@ private:
     {
         CommandCost last; // of the last frame
         std::vector<double> ms, gap_ms, cpu_ms;
+        std::string statistics; // of the kernel's machine code, in the driver's words
     };
     /// Adds a frame, and forgets those before it whose commands were others.
     static void add(std::vector<Command>& commands, const std::vector<CommandCost>& frame);

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-Result<OpenedPackage> openPackage(const BenchOptions& options)
+Result<OpenedPackage> openPackage(const BenchOptions& options, bool kernel_statistics)
 {
     auto package = package::Package::open(options.package);
     if (!package)
@@ -19,7 +19,7 @@ Result<OpenedPackage> openPackage(const BenchOptions& options)
     const auto index = selectDevice(instance->devices(), options.device);
     if (!index)
         return index.error();
-    auto device = Device::create(*instance, *index, false);
+    auto device = Device::create(*instance, *index, {.kernel_statistics = kernel_statistics});
     if (!device)
         return device.error();
     auto scene = SceneGpu::create(**device, *package);

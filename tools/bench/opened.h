@@ -25,7 +25,8 @@ struct OpenedPackage
     Camera camera;
 };
 
-Result<OpenedPackage> openPackage(const BenchOptions& options);
+/// @param kernel_statistics whether the device is to tell of the kernels' machine code
+Result<OpenedPackage> openPackage(const BenchOptions& options, bool kernel_statistics = false);
 
 /// What the renderer shows, linear, rows from the top; NaN and infinities are black. Waits for the device.
 ImageF pictureOf(const Renderer& renderer, const Device& device);

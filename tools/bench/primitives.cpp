@@ -118,7 +118,7 @@ Status benchPrimitives(const PrimitiveBenchOptions& options)
     const auto index = selectDevice(instance->devices(), options.device);
     if (!index)
         return index.error();
-    const auto device = Device::create(*instance, *index, false);
+    const auto device = Device::create(*instance, *index);
     if (!device)
         return device.error();
     const Workers workers = options.workers == "groups"    ? Workers::kGroups
