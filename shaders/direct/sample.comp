@@ -34,8 +34,6 @@ layout(constant_id = 4) const bool kCountsRays = false; // for measurements
 const float kRestShare = 0.25; // of the blocks of pixels that send a ray to what is not seen around, where something is
 const uint kBlock = 32u;       // threads, of neighbouring pixels (lib/tile.glsl)
 
-shared ShadowRay shadow_rays[kLightSets][kRaysGroupSize]; // of each thread: in registers they would leave sampling too few
-
 /// The fraction of a cluster's light that is seen around.
 float visibleOf(uint tile, uint cluster)
 {
@@ -160,24 +158,18 @@ void main()
     uint rest = (0xffffffffu >> (32u - params.cluster_count)) & ~(lights.x | lights.y);
     // Most of what no ray around has reached is hidden: few of the blocks send rays there.
     float rest_share = (lights.x | lights.y) == 0u ? 1.0 : kRestShare;
-    for (uint set = kKnowsSeen ? kSureLights : kRestLights;;)
-    {
-        float share = set == kRestLights ? rest_share : 1.0;
-        uint clusters = set == kSureLights ? lights.x : set == kSeenLights ? lights.y : draw_rest < share ? rest : 0u;
-        ShadowRay shadow = sampleSet(set, clusters, v, path, point.depth + 1u, index, tile, choice.y);
-        shadow.radiance /= share;
-        shadow_rays[set][gl_LocalInvocationID.x] = shadow;
-        if (kCountsRays && shadow.radiance != vec3(0.0))
-            atomicAdd(shadow_count.count, 1u);
-        if (++set >= kLightSets)
-            break;
-    }
+    ShadowRay to_sure = sampleSet(kSureLights, kKnowsSeen ? lights.x : 0u, v, path, point.depth + 1u, index, tile, choice.y);
+    ShadowRay to_seen = sampleSet(kSeenLights, kKnowsSeen ? lights.y : 0u, v, path, point.depth + 1u, index, tile, choice.y);
+    ShadowRay to_rest = sampleSet(kRestLights, draw_rest < rest_share ? rest : 0u, v, path, point.depth + 1u, index, tile, choice.y);
+    to_rest.radiance /= rest_share;
     if (params.traces_bsdf_samples != 0u)
         sendEmitterRay(v, throughput, path, choice.x, u);
+    if (kCountsRays)
+        atomicAdd(shadow_count.count, 1u);
     vec3 light = vec3(0.0);
     for (uint set = kKnowsSeen ? kSureLights : kRestLights;;) // rays come last, when they need registers most
     {
-        ShadowRay shadow = shadow_rays[set][gl_LocalInvocationID.x];
+        ShadowRay shadow = set == kSureLights ? to_sure : set == kSeenLights ? to_seen : to_rest;
         if (shadow.radiance != vec3(0.0))
             light += shadow.radiance * transmittance(shadow.ray.origin, shadow.ray.direction, shadow.ray.t_max);
         if (++set >= kLightSets)
