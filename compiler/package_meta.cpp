@@ -1,5 +1,6 @@
 #include "compiler/package_meta.h"
 
+#include "compiler/delta_lobes.h"
 #include "compiler/flatten.h"
 
 #include <fmt/format.h>
@@ -106,6 +107,9 @@ fb::MetaT makeMeta(const CompileOptions& options, const SceneData& scene, const 
     };
     meta.has_alpha = any(gpu::kTriangleAlpha);
     meta.has_thin = any(gpu::kTriangleThin);
+    const DeltaLobes delta_lobes = findDeltaLobes(scene);
+    meta.has_delta_lobes = delta_lobes.seen;
+    meta.has_caustics = delta_lobes.seen && (delta_lobes.matter || !lights.caustic_targets.empty());
     return meta;
 }
 

@@ -11,6 +11,7 @@ add_library(lumicut_scene_build STATIC
     ${CMAKE_CURRENT_LIST_DIR}/caustic_targets.cpp
     ${CMAKE_CURRENT_LIST_DIR}/cube_map.cpp
     ${CMAKE_CURRENT_LIST_DIR}/emission_average.cpp
+    ${CMAKE_CURRENT_LIST_DIR}/mapped_texture.cpp
     ${CMAKE_CURRENT_LIST_DIR}/environment.cpp
     ${CMAKE_CURRENT_LIST_DIR}/environment_map.cpp
     ${CMAKE_CURRENT_LIST_DIR}/environment_sink.cpp)

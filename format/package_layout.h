@@ -9,7 +9,7 @@ namespace package
 {
 inline constexpr std::array<uint8_t, 12> kMagic{0xAB, 'L', 'U', 'M', 'I', ' ', '1', 0xBB, '\r', '\n', 0x1A, '\n'};
 inline constexpr uint16_t kVersionMajor = 3;     // readers refuse another
-inline constexpr uint16_t kVersionMinor = 1;     // readers ignore a higher one
+inline constexpr uint16_t kVersionMinor = 2;     // readers ignore a higher one
 inline constexpr uint32_t kBulkAlignment = 4096; // of uncompressed bulk chunks: mapped pages go to the GPU as they lie
 inline constexpr uint32_t kSmallAlignment = 16;  // of META and compressed chunks
 inline constexpr uint64_t kMaxExpansion = 1024;  // raw_bytes <= this x stored_bytes: bounds what a reader allocates

@@ -52,10 +52,10 @@ bool splitsMirrors(const Device& device, const SceneGpu& scene, uint64_t pixel_c
     return scene.hasSmoothLayers() && 2 * pixel_count <= std::min(range / sizeof(gpu::ShadingPoint), threads);
 }
 
-/// Caustic paths that there is room for: none start where nothing is smooth.
+/// Caustic paths that there is room for: none start where nothing sends any.
 uint32_t causticPaths(const SceneGpu& scene, const Settings& settings)
 {
-    return scene.hasFeature(gpu::kFeatureDeltaLobes) ? settings.caustic_photons : 1;
+    return scene.sendsCaustics() ? settings.caustic_photons : 1;
 }
 
 /// Photons that a map of `wanted` has room for: no more than this device's buffers hold of what is made of each.
@@ -139,7 +139,7 @@ GlobalIllumination::GlobalIllumination(const Device& device, const SceneGpu& sce
 FrameTraits GlobalIllumination::traits() const
 {
     return {.has_specular = has_specular_,
-            .has_delta_lobes = scene_.hasFeature(gpu::kFeatureDeltaLobes),
+            .has_caustics = scene_.sendsCaustics(),
             .has_mirrors = has_mirrors_,
             .reflects_roughly = scene_.reflectsRoughly(),
             .has_noisy_direct = direct_.isNoisy(),

@@ -10,7 +10,7 @@ LightFilter::LightFilter(const Device& device, const SceneGpu& scene, const Sett
     if (filters || settings.history_frames > 0 || settings.antialias_frames > 0)
         signals_.emplace(device, scene, width * height, scratch);
     if (settings.history_frames > 0)
-        history_.emplace(device, scene.constants(), width, height, scratch.part());
+        history_.emplace(device, scene.transportConstants(), width, height, scratch.part());
     if (filters)
         denoise_.emplace(device, width * height, scratch.part());
 }

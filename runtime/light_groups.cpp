@@ -53,11 +53,19 @@ LightGroups groupLights(std::span<const gpu::Light> lights, std::span<const uint
         const bool punctual =
             std::ranges::all_of(clusters, [&](const auto& entry)
                                 { return entry.second.size() == 1 && isPunctual(lights[entry.second[0]]); });
+        uint32_t extended = 0, bit = 1;
+        for (const auto& [number, members] : clusters)
+        {
+            if (!std::ranges::all_of(members, [&](uint32_t i) { return isPunctual(lights[i]); }))
+                extended |= bit;
+            bit <<= 1;
+        }
         result.groups.push_back({.kind = kind,
                                  .first_cluster = uint32_t(result.clusters.size()),
                                  .cluster_count = uint32_t(clusters.size()),
                                  .punctual = punctual,
-                                 .one_place = punctual && clusters.size() == 1});
+                                 .one_place = punctual && clusters.size() == 1,
+                                 .extended = extended});
         for (const auto& [number, members] : clusters)
             addCluster(result, lights, members);
     }

@@ -20,6 +20,7 @@ struct LightGroup
     uint32_t cluster_count; // 1, but for local lights
     bool punctual;          // every cluster is one punctual light: each sample of it is the same
     bool one_place;         // and there is one cluster
+    uint32_t extended;      // bit i: cluster i, of kMostClusters at most, has lights with an area
 };
 
 struct LightGroups

@@ -49,14 +49,6 @@ gpu::SceneInfo sceneInfo(const package::Package& package)
     return info;
 }
 
-/// As shaders/lib/bsdf/layers.glsl decides; textures may lower both roughnesses to 0.
-bool mayHaveDeltaLobe(const gpu::Material& material)
-{
-    return material.roughness < gpu::kSmoothRoughness || material.metallic_roughness_texture != gpu::kNone ||
-           (material.clearcoat > 0 && (material.clearcoat_roughness < gpu::kSmoothRoughness ||
-                                       material.clearcoat_roughness_texture != gpu::kNone));
-}
-
 uint32_t materialFeatures(const gpu::Material& material)
 {
     const gpu::vec3& sheen = material.sheen_color;
@@ -98,8 +90,7 @@ uint32_t sceneFeatures(const package::Package& package)
     if (isAnimated(package, lumicut::fb::ChannelTarget::MaterialMetallic))
         features |= gpu::kFeatureMetal | gpu::kFeatureSpecular;
     const bool any_roughness = isAnimated(package, lumicut::fb::ChannelTarget::MaterialRoughness);
-    if ((features & gpu::kFeatureSpecular) != 0 &&
-        (any_roughness || std::ranges::any_of(package.materials(), mayHaveDeltaLobe)))
+    if ((features & gpu::kFeatureSpecular) != 0 && (any_roughness || package.meta().has_delta_lobes()))
         features |= gpu::kFeatureDeltaLobes;
     if (std::ranges::any_of(package.textureRefs(),
                             [](const gpu::TextureRef& ref) { return (ref.sampling & gpu::kSampleUv1) != 0; }))
@@ -190,9 +181,14 @@ Result<std::unique_ptr<SceneGpu>> SceneGpu::create(const Device& device, const p
     const std::vector<gpu::TriangleCorners> corners = movingCorners(package);
     scene->last_corners_ = device.upload<gpu::TriangleCorners>("scene.last_corners", corners);
     scene->features_ = sceneFeatures(package);
-    scene->constants_ = {
-        {{"kSceneFeatures", scene->features_}, {"kUsedTexturePages", package.meta().texture_pages()->size()}}};
     const bool any_roughness = isAnimated(package, lumicut::fb::ChannelTarget::MaterialRoughness);
+    scene->sends_caustics_ =
+        scene->hasFeature(gpu::kFeatureDeltaLobes) && (any_roughness || package.meta().has_caustics());
+    const Constant pages{"kUsedTexturePages", package.meta().texture_pages()->size()};
+    scene->constants_ = {Constant{"kSceneFeatures", scene->features_}, pages};
+    scene->transport_constants_ = scene->constants_;
+    if (!scene->sends_caustics_)
+        scene->transport_constants_[0].value &= ~gpu::kFeatureDeltaLobes;
     scene->reflects_roughly_ = any_roughness || std::ranges::any_of(package.materials(), isRough);
     scene->has_smooth_layers_ = any_roughness || std::ranges::any_of(package.materials(), hasSmoothLayer);
     scene->createImages(package);

@@ -32,6 +32,11 @@ public:
     const gpu::SceneInfo& info() const { return info_; }
     /// Specialization constants of every kernel that reads the scene: features, texture pages in use (lib/scene.glsl).
     SharedConstants constants() const { return SharedConstants(constants_); }
+    /// The same for kernels that follow light from surface to surface, not from the eye: without delta lobes where the scene has
+    /// too few for that (sendsCaustics()).
+    SharedConstants transportConstants() const { return SharedConstants(transport_constants_); }
+    /// Mirrors, glass or smooth layers send so much light that it matters to other surfaces.
+    bool sendsCaustics() const { return sends_caustics_; }
     /// Whether it has any of these kFeature*.
     bool hasFeature(uint32_t features) const { return (features_ & features) != 0; }
     /// Some opaque material is so rough that spherical harmonics can replace rays (shaders/gather/harmonics.h).
@@ -78,7 +83,8 @@ private:
     std::vector<gpu::vec3> emissions_; // by material
     SceneVersion version_;
     uint32_t features_ = 0; // kFeature*
-    std::array<Constant, 2> constants_{};
+    std::array<Constant, 2> constants_{}, transport_constants_{};
+    bool sends_caustics_ = false;
     bool reflects_roughly_ = false;
     bool has_smooth_layers_ = false;
     Buffer info_buffer_;

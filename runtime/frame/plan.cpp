@@ -63,7 +63,7 @@ FramePlan planFrame(const Settings& settings, const FrameTraits& traits, const F
     plan.noisy_direct = plan.direct && traits.has_noisy_direct;
     plan.indirect = shows(settings, gpu::kTermIndirect);
     plan.glossy = traits.has_specular && shows(settings, gpu::kTermGlossy);
-    plan.caustics = traits.has_delta_lobes && shows(settings, gpu::kTermCaustics);
+    plan.caustics = traits.has_caustics && shows(settings, gpu::kTermCaustics);
     plan.makes_map = plan.indirect || plan.glossy;
     // Rough reflection is from the samples' harmonics in the first frame of a picture, with little noise; harmonics of order 4
     // lose detail, so that the frames after it trace rays.
@@ -79,9 +79,9 @@ FramePlan planFrame(const Settings& settings, const FrameTraits& traits, const F
     plan.gather_rays = frame.previous || frame.stands() ? settings.gather_rays : mostGatherRays(settings);
     // Each costs rays a pass over a mostly empty queue. Without mirrors and glass there are only smooth layers over something
     // diffuse, whose third reflections are too faint to matter.
-    plan.chain_depth = traits.has_mirrors       ? settings.specular_depth
-                       : traits.has_delta_lobes ? std::min(settings.specular_depth, 2u)
-                                                : 0;
+    plan.chain_depth = traits.has_mirrors    ? settings.specular_depth
+                       : traits.has_caustics ? std::min(settings.specular_depth, 2u)
+                                             : 0;
     plan.denoise_passes = denoisePasses(settings, traits, frame);
     plan.remembers = settings.history_frames > 0 && goesOn(settings) && !frame.stands();
     plan.antialiases = settings.antialias_frames > 0 && goesOn(settings) && !frame.stands();

@@ -7,9 +7,9 @@
 /// Properties of the scene and of the allocated buffers that a plan depends on.
 struct FrameTraits
 {
-    bool has_specular = false;      // mirrors, glass, rough reflection
-    bool has_delta_lobes = false;   // mirrors, glass or smooth layers: without any there are no chains and no caustics
-    bool has_mirrors = false;       // delta events that are more than the sheen of a smooth layer
+    bool has_specular = false; // mirrors, glass, rough reflection
+    bool has_caustics = false; // mirrors, glass or smooth layers send light to other surfaces, whose paths follow them
+    bool has_mirrors = false;  // delta events that are more than the sheen of a smooth layer
     bool reflects_roughly = false;  // some reflection is so rough that spherical harmonics can replace rays
     bool has_noisy_direct = false;  // lights with an area, or several of them: a ray samples a part
     bool has_guide = false;         // photons are guided

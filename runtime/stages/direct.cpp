@@ -109,6 +109,7 @@ void DirectStage::record(Recorder& rec, const RayStage& rays, const Input& in)
                                        .picks = picks_,
                                        .first_cluster = lamps->first_cluster,
                                        .cluster_count = lamps->cluster_count,
+                                       .extended = lamps->extended,
                                        .first_sample = in.first_sample,
                                        .seed = in.seed + kSurveySeed,
                                        .shadow_count = shadow_count_,

@@ -4,7 +4,7 @@
 
 GlossyStage::GlossyStage(const Device& device, const SceneGpu& scene, uint32_t max_pixels, const Scratch& scratch)
     : generate_(device.kernel("glossy/generate", scene.constants())),
-      shade_(device.kernel("glossy/shade", scene.constants())),
+      shade_(device.kernel("glossy/shade", scene.transportConstants())),
       harmonics_(device.kernel("glossy/harmonics", scene.constants())),
       queue_(device, "glossy.queue", max_pixels, scratch),
       hits_(device.texelArray<gpu::Hit>("glossy.hits", max_pixels, scratch)),

@@ -62,10 +62,11 @@ bool GuideStage::helps(const SceneGpu& scene)
 }
 
 GuideStage::GuideStage(const Device& device, const SceneGpu& scene, uint32_t max_paths)
-    : scene_(scene), table_version_(scene.lightTableVersion()), emit_(device.kernel("guide/emit", scene.constants())),
-      splat_(device.kernel("guide/splat", scene.constants())), value_(device.kernel("guide/value", scene.constants())),
-      estimate_(device.kernel("guide/estimate")), fade_(device.kernel("guide/fade")),
-      learn_(device.kernel("guide/learn")),
+    : scene_(scene), table_version_(scene.lightTableVersion()),
+      emit_(device.kernel("guide/emit", scene.transportConstants())),
+      splat_(device.kernel("guide/splat", scene.transportConstants())),
+      value_(device.kernel("guide/value", scene.transportConstants())), estimate_(device.kernel("guide/estimate")),
+      fade_(device.kernel("guide/fade")), learn_(device.kernel("guide/learn")),
       distribution_(device.array<gpu::GuideDistribution>("guide.distribution", 1)),
       cells_(device.array<uint32_t>("guide.cells", max_paths)),
       importance_(device.array<uint32_t>("guide.importance", gpu::kGuideBins)),

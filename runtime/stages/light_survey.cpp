@@ -52,7 +52,8 @@ const Buffer& LightSurvey::record(Recorder& rec, const Input& in) const
     const gpu::TallyParams tally{.tile_count = tile_count_,
                                  .cluster_count = in.cluster_count,
                                  .columns = tilesAlong(width_),
-                                 .rows = tilesAlong(height_)};
+                                 .rows = tilesAlong(height_),
+                                 .extended = in.extended};
     rec.run(tally_, tile_count_ * in.cluster_count, tally, {{"Arrived", arrived_}, {"Sums", sums_}});
     rec.run(divide_, tile_count_, tally, {{"Sums", sums_}, {"Tiles", tiles_}});
     return tiles_;

@@ -20,6 +20,7 @@ public:
         const Buffer& clusters;                // gpu::LightCluster[]
         const Buffer& picks;                   // gpu::LightPick[]
         uint32_t first_cluster, cluster_count; // above 0
+        uint32_t extended;                     // bit i: cluster i has lamps with an area
         uint32_t first_sample;
         uint32_t seed;
         const Buffer& shadow_count; // gpu::QueueSize, grows by its rays where

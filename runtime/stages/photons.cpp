@@ -9,8 +9,8 @@ constexpr float kAimedFraction = 0.9f;
 PhotonStage::PhotonStage(const Device& device, const SceneGpu& scene, PhotonKind kind, uint32_t max_paths,
                          uint32_t capacity, const Scratch& scratch)
     : kind_(kind), has_targets_(scene.info().caustic_target_count > 0), capacity_(capacity),
-      emit_(device.kernel("photons/emit", scene.constants())),
-      trace_(device.kernel("photons/trace", scene.constants())), close_(device.kernel("photons/close")),
+      emit_(device.kernel("photons/emit", scene.transportConstants())),
+      trace_(device.kernel("photons/trace", scene.transportConstants())), close_(device.kernel("photons/close")),
       place_(device.kernel("photons/place")), scan_(device, "photons.scan", max_paths),
       starts_(device.array<gpu::PhotonStart>("photons.starts", max_paths, scratch)),
       photons_(device.array<gpu::Photon>("photons.photons", capacity, scratch)),

@@ -42,7 +42,7 @@ void main()
     for (uint c = 0u; c < params.cluster_count; ++c)
     {
         vec2 here = sums[c * params.tile_count + tile], around = lightAround(c, tile), light = mix(here, around, kAround);
-        bool is_seen = around.x > 0.0, is_sure = here.x > 0.0 && here.x >= 0.999 * here.y; // but for rounding
+        bool is_seen = around.x > 0.0, is_sure = (params.extended >> c & 1u) == 0u && here.x > 0.0 && here.x >= 0.999 * here.y; // but for rounding
         // A cluster of which one ray arrives may be seen better elsewhere: a part of what is hidden counts.
         float part = is_seen ? min(1.0, light.x / light.y + 1.0 / float(kSurveyRays)) : 1.0;
         sure |= is_sure ? 1u << c : 0u;

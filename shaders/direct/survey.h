@@ -31,7 +31,8 @@ GPU_SIZE(LightCluster, 16);
 
 // What a tile knows of a cluster: all of its rays have arrived; some have, or some of those of a tile beside; or none. A set's shadow
 // ray is its own: what surely arrives adds no noise to what may be hidden, and no lamp behind a wall takes the ray of one that is
-// seen.
+// seen. Lamps with an area are not told apart by whether they surely arrive: most of their noise is in where on them a ray ends
+// (atrium: LDR-FLIP of direct light 0.119 in place of 0.121 for 0.7 ms of a frame on an H200).
 GPU_CONST uint kSureLights = 0u, kSeenLights = 1u, kRestLights = 2u, kLightSets = 3u;
 
 /// What a tile knows of the clusters.
@@ -62,8 +63,9 @@ struct TallyParams
     uint tile_count;
     uint cluster_count;
     uint columns, rows; // of tiles; those of other paths through the same pixels follow
+    uint extended;      // bit i: cluster i has lamps with an area
 };
-GPU_SIZE(TallyParams, 16);
+GPU_SIZE(TallyParams, 20);
 
 GPU_NAMESPACE_END
 #endif

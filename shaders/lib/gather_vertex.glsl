@@ -127,7 +127,7 @@ GatherVertex shadeGatherVertex(Ray ray, Hit hit, inout GatherState state, inout 
         vertex.radiance += state.throughput * lightThrough(v, 1.0 - scattered + p.transmission, sampler_);
         read = 1.0;
     }
-    if (choice < read)
+    if (read == 1.0 || choice < read) // always, where the kernel's constants leave nothing to follow
     {
         bool passes = isTranslucent(b) || (frosted && !follows);
         vec3 light = vec3(0.0);

@@ -1,4 +1,4 @@
-// Which terms a pixel's light has in the scene. Functions only.
+// Which terms a pixel's light has in the scene; for kernels with SceneGpu::transportConstants(). Functions only.
 #ifndef LIB_LIGHT_TERMS_GLSL
 #define LIB_LIGHT_TERMS_GLSL
 #include "shaders/lib/scene.glsl"

@@ -447,7 +447,7 @@ TEST(FramePlan, GoesOnWhereTheLastFrameServes)
 {
     Settings settings;
     const FrameTraits traits{.has_specular = true,
-                             .has_delta_lobes = true,
+                             .has_caustics = true,
                              .reflects_roughly = true,
                              .has_noisy_direct = true,
                              .gathers_at_pixels = true,
@@ -476,7 +476,7 @@ TEST(FramePlan, GoesOnWhereTheLastFrameServes)
     EXPECT_EQ(caustics.lightTerms(), gpu::kLightCaustics);
     EXPECT_GT(caustics.chain_depth, 0u);
     FrameTraits rough = traits; // no mirror anywhere: nothing that a caustic or a chain could begin with
-    rough.has_delta_lobes = false;
+    rough.has_caustics = false;
     EXPECT_FALSE(planFrame(settings, rough, frame).caustics);
     EXPECT_EQ(planFrame(settings, rough, frame).chain_depth, 0u);
 }
