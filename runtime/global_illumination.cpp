@@ -185,7 +185,10 @@ const Buffer& GlobalIllumination::record(Recorder& rec, const RayStage& rays, co
     }
     if (plan.caustics)
         recordCaustics(c);
-    filter_.record(rec, frame, surface, light_, plan, settings);
+    highlights_ = plan.remembers && plan.noisy_direct && frame.previous
+                      ? direct_.recordHighlights(rec, surface.points, *frame.previous)
+                      : nullptr;
+    filter_.record(rec, frame, surface, light_, plan, settings, highlights_);
     const Buffer& picture = compose_.record(rec, light_, plan, width_ * height_, point_count_);
     if (layers_)
         layers_->record(rec, frame, surface, light_, plan.lightTerms());

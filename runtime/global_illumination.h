@@ -4,6 +4,7 @@
 #include "runtime/frame/light_buffers.h"
 #include "runtime/frame/plan.h"
 #include "runtime/light_filter.h"
+#include "runtime/stages/antialias.h"
 #include "runtime/stages/caustics.h"
 #include "runtime/stages/compose.h"
 #include "runtime/stages/direct.h"
@@ -42,6 +43,11 @@ public:
     }
     /// gpu::Motion[width * height] of the last frame whose plan antialiases.
     const Buffer& motions() const { return filter_.motions(); }
+    /// Of the last frame, where they move.
+    std::optional<AntialiasStage::Highlights> highlights() const
+    {
+        return highlights_ ? std::optional<AntialiasStage::Highlights>({light_.direct, *highlights_}) : std::nullopt;
+    }
     /// From now on record() keeps the layers of its pictures, but of views.
     void keepLayers(const Device& device) { layers_.emplace(device, scene_, width_ * height_); }
     /// gpu::LayerSums[width * height] over the frames of the picture so far.
@@ -106,7 +112,8 @@ private:
     InterpolateStage interpolate_;
     GlossyStage glossy_;
     CausticsStage caustics_;
-    std::pair<uint32_t, float> discs_; // what the discs of the caustic map were made by: photons, radius
+    std::pair<uint32_t, float> discs_;   // what the discs of the caustic map were made by: photons, radius
+    const Buffer* highlights_ = nullptr; // of the last frame, of DirectStage
     LightFilter filter_;
     ComposeStage compose_;
     std::optional<LayersStage> layers_; // where they are asked for

@@ -16,7 +16,8 @@ LightFilter::LightFilter(const Device& device, const SceneGpu& scene, const Sett
 }
 
 void LightFilter::record(Recorder& rec, const FrameInfo& frame, const SurfaceBuffers& surface,
-                         const LightBuffers& light, const FramePlan& plan, const Settings& settings)
+                         const LightBuffers& light, const FramePlan& plan, const Settings& settings,
+                         const Buffer* highlights)
 {
     if (plan.denoise_passes == 0 && !plan.remembers && !plan.antialiases)
         return;
@@ -26,7 +27,8 @@ void LightFilter::record(Recorder& rec, const FrameInfo& frame, const SurfaceBuf
                                .surface = surface,
                                .light = light,
                                .frame = frame,
-                               .most_frames = settings.history_frames});
+                               .most_frames = settings.history_frames,
+                               .highlights = highlights});
     if (plan.noisy_direct)
         filter(rec, frame, signals, signals.direct, light.direct, plan);
     if (plan.glossy)

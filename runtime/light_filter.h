@@ -15,9 +15,9 @@ public:
     LightFilter(const Device& device, const SceneGpu& scene, const Settings& settings, uint32_t width, uint32_t height,
                 bool is_noisy, const Scratch& scratch = {});
 
-    /// As the plan says, in place.
+    /// As the plan says, in place. @param highlights of HistoryStage::Input
     void record(Recorder& rec, const FrameInfo& frame, const SurfaceBuffers& surface, const LightBuffers& light,
-                const FramePlan& plan, const Settings& settings);
+                const FramePlan& plan, const Settings& settings, const Buffer* highlights = nullptr);
     /// gpu::Motion[width * height] of the last frame whose plan antialiases.
     const Buffer& motions() const { return signals_->motions(); }
     /// Share of the pixels that went on from a history in the last frame, none where none is kept; waits for the device.

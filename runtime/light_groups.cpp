@@ -29,7 +29,7 @@ void addCluster(LightGroups& result, std::span<const gpu::Light> lights, const s
     result.clusters.push_back({.first_pick = uint32_t(result.picks.size()),
                                .pick_count = uint32_t(members.size()),
                                .share = float(share),
-                               .unused = 0});
+                               .strongest = members[size_t(std::ranges::max_element(weights) - weights.begin())]});
     const auto table = buildAliasTable(weights);
     for (size_t i = 0; i < members.size(); ++i)
     {

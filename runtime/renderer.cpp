@@ -169,7 +169,8 @@ void Renderer::recordRemembering(Recorder& rec, const FrameInfo& frame, const Se
     else if (is_antialiased_)
         antialias_->recordMoving(rec, picture, gi_ ? gi_->motions() : paths_->motions(), width_, height_,
                                  mostAntialiased(frame, settings), frame.previous.has_value(),
-                                 frame.light_range ? frame.light_range->surely() : gpu::vec3{1, 1, 1});
+                                 frame.light_range ? frame.light_range->surely() : gpu::vec3{1, 1, 1},
+                                 gi_ ? gi_->highlights() : std::nullopt);
     if (shows_error_)
         error_->record(rec, resolve_.sum(), resolve_.sampleCount(), width_, height_);
 }

@@ -11,30 +11,39 @@ constexpr float kMostCounted = 255;
 } // namespace
 
 AntialiasStage::AntialiasStage(const Device& device, uint32_t max_pixels)
-    : blend_(device.kernel("antialias/blend")),
-      stand_(device.kernel("antialias/stand")), shown_{device.array<gpu::vec3>("antialias.shown_a", max_pixels),
-                                                       device.array<gpu::vec3>("antialias.shown_b", max_pixels)},
+    : blend_(device.kernel("antialias/blend")), stand_(device.kernel("antialias/stand")),
+      no_direct_(device.array<gpu::vec3>("antialias.no_direct", 1)),
+      no_factors_(device.array<float>("antialias.no_factors", 1)), shown_{device.array<gpu::vec3>("antialias.shown_a",
+                                                                                                  max_pixels),
+                                                                          device.array<gpu::vec3>("antialias.shown_b",
+                                                                                                  max_pixels)},
       counts_{device.array<float>("antialias.counts_a", max_pixels),
               device.array<float>("antialias.counts_b", max_pixels)}
 {
 }
 
 void AntialiasStage::recordMoving(Recorder& rec, const Buffer& picture, const Buffer& motions, uint32_t width,
-                                  uint32_t height, uint32_t most_frames, bool continues, gpu::vec3 factor)
+                                  uint32_t height, uint32_t most_frames, bool continues, gpu::vec3 factor,
+                                  const std::optional<Highlights>& highlights)
 {
     const auto scope = rec.scope("antialias");
     moved_frames_ = continues ? moved_frames_ + 1 : 0;
     moving_ = 1 - latest_;
     moving_counts_ = 1 - moving_counts_;
     rec.run(blend_, width * height,
-            gpu::AntialiasParams{
-                .point_count = width * height, .width = width, .most_frames = most_frames, .factor = factor},
+            gpu::AntialiasParams{.point_count = width * height,
+                                 .width = width,
+                                 .most_frames = most_frames,
+                                 .highlights = highlights.has_value(),
+                                 .factor = factor},
             {{"Picture", picture},
              {"Motions", motions},
              {"OldShown", shown_[latest_]},
              {"OldCounts", counts_[1 - moving_counts_]},
              {"Shown", shown_[moving_]},
-             {"Counts", counts_[moving_counts_]}});
+             {"Counts", counts_[moving_counts_]},
+             {"Direct", highlights ? highlights->direct : no_direct_},
+             {"Factors", highlights ? highlights->factors : no_factors_}});
     latest_ = moving_;
 }
 

@@ -66,6 +66,11 @@ DirectStage::DirectStage(const Device& device, const SceneGpu& scene, uint32_t w
       is_noisy_(has_area_lights_ || hasChoice(scene.lights()))
 {
     const uint32_t clusters = countOf(clusters_of_);
+    if (clusters > 0 && scene.hasFeature(gpu::kFeatureSpecular))
+    {
+        highlights_ = device.kernel("direct/highlights", scene.constants());
+        factors_ = device.array<float>("direct.factors", width * height);
+    }
     if (clusters > 1)
     {
         sample_seen_ = device.kernel("direct/sample", scene.constants(), {{"kKnowsSeen", 1}});
@@ -114,9 +119,29 @@ void DirectStage::record(Recorder& rec, const RayStage& rays, const Input& in)
                                        .seed = in.seed + kSurveySeed,
                                        .shadow_count = shadow_count_,
                                        .counts_rays = rays.counts()});
+    tiles_ = tiles;
     for (uint32_t i = 0; i < in.light_sample_count; ++i)
         recordSample(rec, rays, in, i, *tiles);
     rays.count(rec, shadow_count_, true);
+}
+
+const Buffer* DirectStage::recordHighlights(Recorder& rec, const Buffer& points,
+                                            const gpu::CameraParams& last_camera) const
+{
+    const auto lamps = std::ranges::find(lights_.groups, LightKind::kLocal, &LightGroup::kind);
+    const bool alone = std::ranges::all_of(lights_.groups, [](const LightGroup& group)
+                                           { return group.one_place || group.kind == LightKind::kLocal; });
+    if (!highlights_ || lamps == lights_.groups.end() || lamps->one_place || !alone || last_camera.orthographic != 0)
+        return nullptr;
+    const auto scope = rec.scope("highlights");
+    rec.run(*highlights_, width_ * height_,
+            gpu::HighlightParams{.last_eye = last_camera.position,
+                                 .pixel_count = width_ * height_,
+                                 .width = width_,
+                                 .first_cluster = lamps->first_cluster,
+                                 .cluster_count = lamps->cluster_count},
+            {{"Points", points}, {"Clusters", clusters_}, {"Tiles", *tiles_}, {"Factors", factors_}});
+    return &factors_;
 }
 
 Kernel DirectStage::sampleKernel(bool knows_seen, bool counts_rays) const

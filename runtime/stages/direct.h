@@ -35,6 +35,10 @@ public:
         uint32_t seed;
     };
     void record(Recorder& rec, const RayStage& rays, const Input& in);
+    /// By what factor the light of `noisy` has changed since the last frame because the eye has moved. Call it after record().
+    /// @param points gpu::ShadingPoint[at least width * height]
+    /// @return float[width * height]; null where that is 1 everywhere, or lamps are not all that there is
+    const Buffer* recordHighlights(Recorder& rec, const Buffer& points, const gpu::CameraParams& last_camera) const;
     bool isNoisy() const { return is_noisy_; } // otherwise direct light is exact in every frame, whatever lights change
 
 private:
@@ -56,5 +60,8 @@ private:
     RayQueue emitter_queue_;
     Buffer emitter_rays_, hits_, clusters_, picks_, densities_, no_tiles_;
     std::optional<LightSurvey> survey_; // where there are several clusters
+    std::optional<Kernel> highlights_;  // where surfaces can have any of lamps
+    Buffer factors_;
+    const Buffer* tiles_ = nullptr; // of the last record()
     bool has_area_lights_, is_noisy_;
 };

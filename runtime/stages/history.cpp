@@ -32,8 +32,10 @@ HistoryStage::HistoryStage(const Device& device, const SharedConstants& constant
       blocks_(device.array<gpu::HistoryBlock>("history.blocks", tile_count_ * gpu::kTileBlocks, scratch)),
       followed_(device.texelArray<gpu::FollowedTerm>("history.followed",
                                                      tile_count_ * gpu::kTileBlocks * gpu::kHistoryTerms, scratch)),
-      pixels_{device.texelArray<gpu::PixelHistory>("history.pixels_a", width * height),
-              device.texelArray<gpu::PixelHistory>("history.pixels_b", width * height)}
+      no_factors_(device.array<float>("history.no_factors", 1)), pixels_{device.texelArray<gpu::PixelHistory>(
+                                                                             "history.pixels_a", width * height),
+                                                                         device.texelArray<gpu::PixelHistory>(
+                                                                             "history.pixels_b", width * height)}
 {
 }
 
@@ -59,8 +61,10 @@ void HistoryStage::record(Recorder& rec, const Input& in)
                                     .pixel_angle = camera.orthographic ? 0 : pixelSide(camera),
                                     .pixel_side = camera.orthographic ? pixelSide(camera) : 0,
                                     .moves = in.signals.moves,
+                                    .highlights = in.highlights != nullptr,
                                     .least = range.least,
                                     .most = range.most};
+    const Buffer& factors = in.highlights != nullptr ? *in.highlights : no_factors_;
     check(tileCount(camera.width, camera.height) <= tile_count_, "{} x {}", camera.width, camera.height);
     if (!in.frame.light_range)
         return rec.run(blend_, params.point_count, params,
@@ -74,7 +78,8 @@ void HistoryStage::record(Recorder& rec, const Input& in)
                         {"DiffusePoints", in.surface.diffuse_points},
                         {"Indirect", in.light.indirect},
                         {"Caustics", in.light.caustics},
-                        {"Displacements", in.signals.displacements}});
+                        {"Displacements", in.signals.displacements},
+                        {"Factors", factors}});
     const uint32_t thread_count = tileCount(camera.width, camera.height) * gpu::kHistoryTileSize;
     rec.run(compare_, thread_count, params,
             {{"Motions", in.signals.motions},
@@ -88,6 +93,7 @@ void HistoryStage::record(Recorder& rec, const Input& in)
              {"Caustics", in.light.caustics},
              {"Compared", compared_},
              {"Displacements", in.signals.displacements},
+             {"Factors", factors},
              {"Tiles", tiles_},
              {"Blocks", blocks_}});
     rec.run(judge_, judgeGroupCount(camera.width, camera.height) * gpu::kJudgeSize, params,
@@ -109,6 +115,7 @@ void HistoryStage::record(Recorder& rec, const Input& in)
              {"Indirect", in.light.indirect},
              {"Caustics", in.light.caustics},
              {"Displacements", in.signals.displacements},
+             {"Factors", factors},
              {"Blocks", blocks_},
              {"FollowedTerms", followed_}});
 }

@@ -19,6 +19,8 @@ public:
         const LightBuffers& light; // so do its indirect light and caustics
         const FrameInfo& frame;    // frame.previous: record() was called for it, too
         uint32_t most_frames;      // <= gpu::kMostHistoryFrames: in a mean
+        const Buffer* highlights =
+            nullptr; // float[pixels]: what direct light has changed by as the eye moved; null: nothing
     };
     void record(Recorder& rec, const Input& in);
 
@@ -28,10 +30,11 @@ public:
 private:
     uint32_t tile_count_;
     Kernel compare_, judge_, reconcile_, blend_;
-    Buffer compared_;              // gpu::PixelPairs[pixels]
-    Buffer tiles_;                 // gpu::TilePairs[tile_count_]
-    Buffer blocks_;                // gpu::HistoryBlock[tile_count_ * kTileBlocks]
-    Buffer followed_;              // gpu::FollowedTerm[tile_count_ * kTileBlocks * kHistoryTerms]
+    Buffer compared_; // gpu::PixelPairs[pixels]
+    Buffer tiles_;    // gpu::TilePairs[tile_count_]
+    Buffer blocks_;   // gpu::HistoryBlock[tile_count_ * kTileBlocks]
+    Buffer followed_; // gpu::FollowedTerm[tile_count_ * kTileBlocks * kHistoryTerms]
+    Buffer no_factors_;
     std::array<Buffer, 2> pixels_; // gpu::PixelHistory[pixels]
     uint32_t now_ = 0;
 };

@@ -10,9 +10,10 @@ struct AntialiasParams
     uint point_count;
     uint width;       // of the picture, pixels
     uint most_frames; // that a pixel may be the mean of
+    uint highlights;  // 1: they move; Factors holds what the light in Direct has changed by since the last frame
     vec3 factor;      // by which the last picture is multiplied: by so much all light has changed since
 };
-GPU_SIZE(AntialiasParams, 24);
+GPU_SIZE(AntialiasParams, 28);
 
 struct StandParams
 {

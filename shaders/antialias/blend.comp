@@ -18,6 +18,8 @@ layout(set = 1, binding = 2, scalar) readonly buffer OldShown { vec3 old_shown[]
 layout(set = 1, binding = 3, scalar) readonly buffer OldCounts { float old_counts[]; };
 layout(set = 1, binding = 4, scalar) writeonly buffer Shown { vec3 shown[]; };
 layout(set = 1, binding = 5, scalar) writeonly buffer Counts { float counts[]; };
+layout(set = 1, binding = 6, scalar) readonly buffer Direct { vec3 direct[]; };
+layout(set = 1, binding = 7, scalar) readonly buffer Factors { float factors[]; };
 
 const float kWithin = 1.25; // standard deviations of the surroundings: fewer cut off what is there, more let ghosts stay
 
@@ -50,6 +52,13 @@ vec3 lastPicture(vec2 at)
     return max(sum, vec3(0.0));
 }
 
+/// What the pixel's light has changed by since the last frame as highlights moved: of its part that is direct light.
+float highlightChange(uint pixel)
+{
+    float part = clamp(luminance(direct[pixel]) / max(luminance(picture[pixel]), 1e-30), 0.0, 1.0);
+    return mix(1.0, factors[pixel], part);
+}
+
 void main()
 {
     uint pixel = gl_GlobalInvocationID.x;
@@ -80,6 +89,8 @@ void main()
     bool known = from.x != kNoMotion && all(greaterThanEqual(at, vec2(-0.5))) && all(lessThan(at, vec2(size()) - 0.5));
     float frames = known ? min(old_counts[pixelAt(ivec2(floor(at + 0.5)))], float(params.most_frames)) : 0.0;
     vec3 old = known ? params.factor * lastPicture(at) : own;
+    if (params.highlights != 0u)
+        old *= highlightChange(pixel);
     if (!(count > 0.0) || !isFinite(old))
         frames = 0.0;
     if (frames > 0.0)

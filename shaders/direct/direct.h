@@ -28,6 +28,16 @@ struct DirectParams
 };
 GPU_SIZE(DirectParams, 76);
 
+struct HighlightParams
+{
+    vec3 last_eye; // metres: where it was in the last frame
+    uint pixel_count;
+    uint width; // of the picture, pixels
+    uint first_cluster;
+    uint cluster_count; // of lamps
+};
+GPU_SIZE(HighlightParams, 28);
+
 struct EmittedParams
 {
     uint seed;

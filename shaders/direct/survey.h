@@ -24,8 +24,8 @@ struct LightCluster // lights that are near each other, so that a surface mostly
 {
     uint first_pick; // its part of the picks
     uint pick_count;
-    float share; // of all lights' pmf
-    uint unused; // whole texels
+    float share;    // of all lights' pmf
+    uint strongest; // light of it
 };
 GPU_SIZE(LightCluster, 16);
 

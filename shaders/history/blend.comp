@@ -23,6 +23,7 @@ layout(set = 1, binding = 7) uniform usamplerBuffer DiffusePoints;
 layout(set = 1, binding = 8, scalar) buffer Indirect { vec3 indirect[]; };
 layout(set = 1, binding = 9, scalar) buffer Caustics { vec3 caustics[]; };
 layout(set = 1, binding = 10, scalar) readonly buffer Displacements { vec3 displacements[]; };
+layout(set = 1, binding = 11, scalar) readonly buffer Factors { float factors[]; };
 
 #include "shaders/lib/diffuse_point.glsl"
 #include "shaders/lib/remember.glsl"

@@ -25,6 +25,7 @@ layout(set = 1, binding = 9, scalar) writeonly buffer Compared { PixelPairs pair
 layout(set = 1, binding = 10, scalar) readonly buffer Displacements { vec3 displacements[]; };
 layout(set = 1, binding = 11, scalar) writeonly buffer Tiles { TilePairs tiles[]; };
 layout(set = 1, binding = 12, scalar) writeonly buffer Blocks { HistoryBlock blocks[]; };
+layout(set = 1, binding = 13, scalar) readonly buffer Factors { float factors[]; };
 
 #include "shaders/lib/diffuse_point.glsl"
 #include "shaders/lib/history_tile.glsl"

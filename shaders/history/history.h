@@ -96,10 +96,11 @@ struct HistoryParams
     float pixel_angle; // radians from a pixel to the next; of an orthographic camera 0
     float pixel_side;  // metres, of an orthographic camera; else 0
     uint moves;        // 1: surfaces can move; Displacements holds one a pixel
-    vec3 least;        // where light has changed: the light is that of the last frame times a factor from here
-    vec3 most;         // to here
+    uint highlights; // 1: they move; Factors holds what direct light has changed by since the last frame, of each pixel
+    vec3 least;      // where light has changed: the light is that of the last frame times a factor from here
+    vec3 most;       // to here
 };
-GPU_SIZE(HistoryParams, 56);
+GPU_SIZE(HistoryParams, 60);
 
 GPU_NAMESPACE_END
 #endif

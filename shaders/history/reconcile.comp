@@ -24,6 +24,7 @@ layout(set = 1, binding = 9, scalar) buffer Caustics { vec3 caustics[]; };
 layout(set = 1, binding = 10, scalar) readonly buffer Displacements { vec3 displacements[]; };
 layout(set = 1, binding = 11, scalar) readonly buffer Blocks { HistoryBlock blocks[]; };
 layout(set = 1, binding = 12) uniform usamplerBuffer FollowedTerms;
+layout(set = 1, binding = 13, scalar) readonly buffer Factors { float factors[]; };
 
 #include "shaders/lib/history_tile.glsl"
 #include "shaders/lib/remember.glsl"

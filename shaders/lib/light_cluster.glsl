@@ -8,7 +8,7 @@
 LightCluster loadCluster(uint index)
 {
     uvec4 a = texelFetch(Clusters, int(index));
-    return LightCluster(a.x, a.y, uintBitsToFloat(a.z), 0u);
+    return LightCluster(a.x, a.y, uintBitsToFloat(a.z), a.w);
 }
 
 LightPick loadPick(uint index)

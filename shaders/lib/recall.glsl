@@ -1,5 +1,5 @@
-// What pixels remember of their surfaces. The kernel declares `buffer Motions`, `buffer Displacements`, `Guides`, `OldGuides`,
-// `OldHistory` and `HistoryParams params` before it includes this. Functions only.
+// What pixels remember of their surfaces. The kernel declares `buffer Motions`, `buffer Displacements`, `buffer Factors`, `Guides`,
+// `OldGuides`, `OldHistory` and `HistoryParams params` before it includes this. Functions only.
 #ifndef LIB_RECALL_GLSL
 #define LIB_RECALL_GLSL
 #include "shaders/lib/light_terms.glsl"
@@ -76,7 +76,10 @@ Past recall(uint pixel)
         if (kSceneHasCaustics)
             addTap(caustics_, second.zw, weight);
     }
-    return Past(meanOf(direct), meanOf(indirect_), meanOf(glossy), meanOf(caustics_));
+    Past past = Past(meanOf(direct), meanOf(indirect_), meanOf(glossy), meanOf(caustics_));
+    if (params.highlights != 0u)
+        past.direct.light *= factors[pixel];
+    return past;
 }
 
 /// Light over reflectance. Of a channel in which the pixel reflects nothing, as dispersion leaves one a frame, it tells nothing:
