@@ -68,21 +68,21 @@ float factorOf(PathVertex v, uint tile)
     if (last_wo.z <= 0.0 || v.wo.z <= 0.0)
         return 1.0;
     float now = 0.0, last = 0.0;
-    for (uint c = 0u; c < params.cluster_count; ++c)
+    for (uint c = 0u;;) // tests at its end: see lib/bvh.glsl why
     {
         LightCluster cluster = loadCluster(params.first_cluster + c);
         Lamp lamp = lampOf(cluster);
         vec3 way = lamp.center - position;
-        float distance2 = max(dot(way, way), 1e-20), cosine = dot(way, v.frame[2]) * inversesqrt(distance2);
-        if (cosine <= 0.0)
-            continue;
+        float distance2 = max(dot(way, way), 1e-20);
         vec3 wi = way * inversesqrt(distance2) * v.frame;
-        float weight = seenOf(tile, c) * cluster.share * cosine / distance2;
+        float weight = seenOf(tile, c) * cluster.share * max(wi.z, 0.0) / distance2;
         Bsdf b = blurred(v.bsdf, lamp.size * inversesqrt(distance2));
         now += weight * brightnessOf(b, v.wo, wi);
         last += weight * brightnessOf(b, last_wo, wi);
+        if (++c >= params.cluster_count)
+            break;
     }
-    return now > 0.0 && last > 0.0 ? clamp(now / last, 1.0 / kMost, kMost) : 1.0;
+    return now > 0.0 && last > 0.0 && !isinf(now) && !isinf(last) ? clamp(now / last, 1.0 / kMost, kMost) : 1.0;
 }
 
 void main()

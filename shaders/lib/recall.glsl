@@ -78,7 +78,13 @@ Past recall(uint pixel)
     }
     Past past = Past(meanOf(direct), meanOf(indirect_), meanOf(glossy), meanOf(caustics_));
     if (params.highlights != 0u)
-        past.direct.light *= factors[pixel];
+    {
+        // Which lamps the pixel itself sees is not known: in the shadow of one, its highlight would be a ghost. The more it has
+        // changed, the sooner frames of now correct it.
+        float factor = factors[pixel];
+        past.direct.light *= factor;
+        past.direct.frames *= min(factor, 1.0 / factor);
+    }
     return past;
 }
 

@@ -17,15 +17,14 @@ float brightness(const gpu::vec3& c)
 class Highlights : public GpuTest
 {
 protected:
-    /// Dark plastic below two lamps that nothing hides, so that direct light is exact in every frame.
-    std::unique_ptr<SceneGpu> floor(SceneBuilder& builder, double roughness)
+    /// Dark plastic below two lamps. Where nothing hides them, direct light is exact in every frame.
+    static void addFloor(SceneBuilder& builder, double roughness)
     {
         const nlohmann::json surface{
             {"baseColorFactor", {0.05, 0.05, 0.05, 1}}, {"metallicFactor", 0}, {"roughnessFactor", roughness}};
         builder.floor(20, 0, builder.material({{"pbrMetallicRoughness", surface}}));
         for (const double x : {-1.0, 1.5})
             builder.light({{"type", "point"}, {"intensity", 100}}, {{"translation", {x, 1.5, -2}}});
-        return load(builder.compile());
     }
 
     /// Of the last of `frames` frames, in which the camera moves past at 5 cm a frame and ends at the same place.
@@ -80,7 +79,8 @@ TEST_F(Highlights, AreWhereTheEyeSeesThemNow)
     for (const double roughness : {0.3, 0.5})
     {
         SceneBuilder builder;
-        const auto scene = floor(builder, roughness);
+        addFloor(builder, roughness);
+        const auto scene = load(builder.compile());
         const auto truth = picture(*scene, Mode::kDirect, 1, 31);
         const auto moved = picture(*scene, Mode::kGi, 16);
         const double ratio = highlightRatio(moved, truth), error = rootMeanSquare(moved, truth);
@@ -88,4 +88,18 @@ TEST_F(Highlights, AreWhereTheEyeSeesThemNow)
         EXPECT_NEAR(ratio, 1, 0.02);
         EXPECT_LT(error, 0.1) << "0.8 and 0.4 where histories stick to the floor";
     }
+}
+
+TEST_F(Highlights, OfALampLeaveNoGhostsInItsShadow)
+{
+    SceneBuilder builder;
+    addFloor(builder, 0.3);
+    builder.box({-1.2f, 0, -1.6f}, {-0.2f, 1.2f, -1.5f}, builder.material(lambert(0.05)));
+    const auto scene = load(builder.compile());
+    const auto truth = picture(*scene, Mode::kDirect, 1, 127);
+    const auto moved = picture(*scene, Mode::kGi, 16);
+    const double ratio = highlightRatio(moved, truth), error = rootMeanSquare(moved, truth);
+    fmt::print("  highlights {:.4f} of the truth, error {:.4f}\n", ratio, error);
+    EXPECT_NEAR(ratio, 1, 0.05);
+    EXPECT_LT(error, 0.15) << "0.09 where histories keep their length";
 }
