@@ -44,18 +44,18 @@ std::vector<std::vector<uint32_t>> trianglesByMaterial(const SceneData& scene)
     return triangles;
 }
 
-/// @param total area of the triangles, @param sentAt what a smooth lobe sends on where the texture is `texel`
+/// @param total area of the triangles, @param sent_at what a smooth lobe sends on where the texture is `texel`
 template <typename SentAt>
 Part smoothPart(const SceneData& scene, const std::vector<uint32_t>& triangles, double total,
-                const Roughness& roughness, const SentAt& sentAt)
+                const Roughness& roughness, const SentAt& sent_at)
 {
     constexpr uint8_t kWhite[4] = {255, 255, 255, 255};
     if (roughness.factor < gpu::kSmoothRoughness)
-        return {1, sentAt(kWhite)};
+        return {1, sent_at(kWhite)};
     if (roughness.texture == gpu::kNone)
         return {};
     if (!(total > 0))
-        return {1, sentAt(kWhite)}; // nothing at rest; it may grow
+        return {1, sent_at(kWhite)}; // nothing at rest; it may grow
     Part part;
     for (const uint32_t triangle : triangles)
     {
@@ -70,7 +70,7 @@ Part smoothPart(const SceneData& scene, const std::vector<uint32_t>& triangles, 
                         if (roughness.factor * (float(texel[1]) / 255) >= gpu::kSmoothRoughness)
                             return;
                         part.smooth += weight;
-                        part.sent += weight * double(sentAt(texel));
+                        part.sent += weight * double(sent_at(texel));
                     });
     }
     return part;
