@@ -246,12 +246,12 @@ void SceneGpu::setMaterial(Recorder& rec, uint32_t index, const gpu::Material& m
 
 void SceneGpu::createImages(const package::Package& package)
 {
-    constexpr std::array<uint32_t, 4> kWhite{~0u, ~0u, ~0u, ~0u};
+    constexpr std::array<uint32_t, 4> kWhiteTexel{~0u, ~0u, ~0u, ~0u};
     for (uint32_t p = 0; p < package.meta().texture_pages()->size(); ++p)
         pages_.push_back(uploadTexturePage(device_, package, p));
     if (pages_.size() < gpu::kTexturePageCount) // one for all that are not there
         pages_.push_back(
-            device_.uploadImage("scene.no_page", {.array = true}, std::as_bytes(std::span(kWhite).first(1))));
+            device_.uploadImage("scene.no_page", {.array = true}, std::as_bytes(std::span(kWhiteTexel).first(1))));
     if (const auto* environment = package.meta().environment())
         environment_ = device_.uploadImage(
             "scene.environment",
@@ -259,7 +259,7 @@ void SceneGpu::createImages(const package::Package& package)
             std::as_bytes(package.environmentMap()));
     else
         environment_ = device_.uploadImage("scene.no_environment", {.format = VK_FORMAT_R32G32B32A32_SFLOAT},
-                                           std::as_bytes(std::span(kWhite)));
+                                           std::as_bytes(std::span(kWhiteTexel)));
 }
 
 void SceneGpu::createDescriptorSet()
