@@ -11,8 +11,8 @@ add_library(lumicut_scene_build STATIC
     ${CMAKE_CURRENT_LIST_DIR}/caustic_targets.cpp
     ${CMAKE_CURRENT_LIST_DIR}/cube_map.cpp
     ${CMAKE_CURRENT_LIST_DIR}/emission_average.cpp
-    ${CMAKE_CURRENT_LIST_DIR}/mapped_texture.cpp
     ${CMAKE_CURRENT_LIST_DIR}/environment.cpp
     ${CMAKE_CURRENT_LIST_DIR}/environment_map.cpp
-    ${CMAKE_CURRENT_LIST_DIR}/environment_sink.cpp)
+    ${CMAKE_CURRENT_LIST_DIR}/environment_sink.cpp
+    ${CMAKE_CURRENT_LIST_DIR}/mapped_texture.cpp)
 target_link_libraries(lumicut_scene_build PUBLIC lumicut_options lumicut_format fmt::fmt PRIVATE lumicut_image_read embree Threads::Threads)

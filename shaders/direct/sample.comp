@@ -164,12 +164,12 @@ void main()
     to_rest.radiance /= rest_share;
     if (params.traces_bsdf_samples != 0u)
         sendEmitterRay(v, throughput, path, choice.x, u);
-    if (kCountsRays)
-        atomicAdd(shadow_count.count, 1u);
     vec3 light = vec3(0.0);
     for (uint set = kKnowsSeen ? kSureLights : kRestLights;;) // rays come last, when they need registers most
     {
         ShadowRay shadow = set == kSureLights ? to_sure : set == kSeenLights ? to_seen : to_rest;
+        if (kCountsRays && shadow.radiance != vec3(0.0))
+            atomicAdd(shadow_count.count, 1u);
         if (shadow.radiance != vec3(0.0))
             light += shadow.radiance * transmittance(shadow.ray.origin, shadow.ray.direction, shadow.ray.t_max);
         if (++set >= kLightSets)

@@ -238,6 +238,19 @@ TEST_F(Measured, RaysAreCountedByScopeAndKind)
     EXPECT_EQ(entries[1].scope, "direct");
     EXPECT_TRUE(entries[1].any_hit);
     EXPECT_EQ(entries[1].ray_count, 3 * kWidth * kHeight); // the floor fills the picture
+
+    const auto package = package::Package::open(package_);
+    ASSERT_TRUE(package);
+    gpu::Light below = package->lights()[0];
+    below.p1 = {-below.p1.x, -below.p1.y, -below.p1.z};
+    RayTally dark(device());
+    renderer.countRays(&dark);
+    rec.begin(scene->descriptorSet());
+    scene->setLight(rec, 0, below);
+    renderer.record(rec, down_, settings, 1);
+    rec.submitAndWait();
+    ASSERT_EQ(dark.entries().size(), 2u);
+    EXPECT_EQ(dark.entries()[1].ray_count, 0u) << "no ray goes to a sun behind the floor";
 }
 
 /// Memory that a renderer of mode gi takes for pictures of 1920 x 1080, bytes.
