@@ -19,10 +19,10 @@ struct Measurement
 {
     std::string motion;
     StageSamples stages;
-    std::vector<double> record_ms, wall_ms; // on the CPU: recording; from its begin to the finished frame
-    std::vector<double> pose_ms;            // of recording: what moves; empty where nothing does
-    uint64_t device_bytes = 0;
-    std::vector<RayTally::Entry> rays; // of one frame
+    std::vector<double> record_ms, wall_ms;     // on the CPU: recording; from its begin to the finished frame
+    std::vector<double> pose_ms;                // of recording: what moves; empty where nothing does
+    uint64_t device_bytes = 0, scene_bytes = 0; // of GPU memory: all, and what the scene itself takes
+    std::vector<RayTally::Entry> rays;          // of one frame
     std::optional<CommandSamples> commands;
 };
 
@@ -35,6 +35,7 @@ Measurement measure(const OpenedPackage& opened, PlayedAnimation& animation, con
 {
     const Mode mode = options.mode == "gi" ? Mode::kGi : options.mode == "direct" ? Mode::kDirect : Mode::kReference;
     SceneGpu& scene = *opened.scene;
+    const uint64_t scene_bytes = opened.device->allocatedBytes();
     Renderer renderer(*opened.device, scene, mode, options.width, options.height, options.settings);
     Recorder rec(*opened.device);
     const bool camera_moves = options.moving == "both" || options.moving == "camera";
@@ -87,6 +88,7 @@ Measurement measure(const OpenedPackage& opened, PlayedAnimation& animation, con
         result.stages.add(times);
     }
     result.device_bytes = opened.device->allocatedBytes();
+    result.scene_bytes = scene_bytes;
 
     if (options.kernels)
         result.commands = CommandSamples::measure(*opened.device, rec, record, end, options.frames);
@@ -136,6 +138,7 @@ void printJson(const FrameBenchOptions& options, const OpenedPackage& opened, co
                                 {"frames", options.frames},
                                 {"triangles", opened.package.triangles().size()},
                                 {"device_bytes", result.device_bytes},
+                                {"scene_bytes", result.scene_bytes},
                                 {"cpu_record", times(result.record_ms)},
                                 {"cpu_wall", times(result.wall_ms)}};
     if (!result.pose_ms.empty())
@@ -177,7 +180,8 @@ void print(const FrameBenchOptions& options, const OpenedPackage& opened, const 
     if (!result.pose_ms.empty())
         row("CPU: of it, posing", result.pose_ms);
     row("CPU: whole frame", result.wall_ms);
-    fmt::print("  device memory {:.1f} MiB\n", double(result.device_bytes) / (1 << 20));
+    fmt::print("  device memory {:.1f} MiB, of which the scene {:.1f}\n", double(result.device_bytes) / (1 << 20),
+               double(result.scene_bytes) / (1 << 20));
     fmt::print("  {:<20} {:>10} {:>12} {:>10}\n", "rays of a frame", "count", "Mrays/s", "floor ms");
     for (const RayTally::Entry& rays : result.rays)
         fmt::print("  {:<20} {:>10} {:>12.2f} {:>10.3f}\n", rays.scope + (rays.any_hit ? " (shadow)" : ""),

@@ -124,7 +124,9 @@ Status measureSequence(const OpenedPackage& opened, const MotionBenchOptions& op
             references.picture(camera(number), term, options.sample_count, lights.hash() ^ animation.hash());
         if (!reference)
             return reference.error();
-        SequenceFrame frame{.picture = displayed(pictureOf(renderer, *opened.device), options.settings.exposure),
+        const ImageF picture = pictureOf(renderer, *opened.device);
+        result.light.add(picture, *reference);
+        SequenceFrame frame{.picture = displayed(picture, options.settings.exposure),
                             .reference = displayed(*reference, options.settings.exposure),
                             .hits = geometry.firstHits(camera(number), options.width, options.height),
                             .plain = {}};

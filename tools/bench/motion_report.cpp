@@ -1,6 +1,9 @@
 #include "tools/bench/motion_report.h"
 
+#include "format/check.h"
+
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 namespace
@@ -54,6 +57,16 @@ Json orNull(const std::array<std::optional<double>, kCount>& values)
     return json;
 }
 
+/// Nothing where a value is not a number.
+std::array<std::optional<double>, 3> known(const std::array<double, 3>& values)
+{
+    std::array<std::optional<double>, 3> of_channels;
+    for (size_t i = 0; i < 3; ++i)
+        if (!std::isnan(values[i]))
+            of_channels[i] = values[i];
+    return of_channels;
+}
+
 std::string text(const std::optional<double>& value)
 {
     return value ? fmt::format("{:.4f}", *value) : "-";
@@ -68,6 +81,24 @@ void printRow(std::string_view name, const std::array<std::optional<double>, kCo
     fmt::print("\n");
 }
 } // namespace
+
+void LightSums::add(const ImageF& picture, const ImageF& reference)
+{
+    check(picture.rgb.size() == reference.rgb.size(), "{} and {} values", picture.rgb.size(), reference.rgb.size());
+    for (size_t i = 0; i < picture.rgb.size(); ++i)
+    {
+        pictures[i % 3] += double(picture.rgb[i]);
+        references[i % 3] += double(reference.rgb[i]);
+    }
+}
+
+std::array<double, 3> LightSums::ratio() const
+{
+    std::array<double, 3> of_channels;
+    for (size_t i = 0; i < 3; ++i)
+        of_channels[i] = references[i] > 0 ? pictures[i] / references[i] : std::nan("");
+    return of_channels;
+}
 
 void printJson(const MotionBenchOptions& options, const OpenedPackage& opened, const MotionResult& result)
 {
@@ -101,6 +132,7 @@ void printJson(const MotionBenchOptions& options, const OpenedPackage& opened, c
     json["plain_pixels"] = result.plain.value();
     json["disoccluded_flip_ratio"] = orNull(unseenFlipRatio(m));
     json["disoccluded_pixels"] = m.unseenShare();
+    json["mean_ratio"] = orNull(known(result.light.ratio()));
     json["ghost_indirect"] = orNull(result.ghost.indirect);
     fmt::print("{}\n", json.dump(2));
 }
@@ -116,6 +148,7 @@ void print(const MotionBenchOptions& options, const OpenedPackage& opened, const
                options.sample_count);
     fmt::print("  {:<34} {:8.4f}  (worst frame {:.4f})\n", "moving FLIP", m.meanFlip(),
                *std::ranges::max_element(m.flip()));
+    printRow("mean ratio, red green blue", known(result.light.ratio()));
     printRow("flicker F1 F2 F3 over references'", flickers(m, over));
     printRow("  without mirrors and caustics", flickers(m, over, true));
     printRow("  of the frames", flickers(m, ofPictures));
