@@ -5,8 +5,9 @@
 FilteredPaths::FilteredPaths(const Device& device, const SceneGpu& scene, const Settings& settings, uint32_t width,
                              uint32_t height)
     : width_(width), height_(height), has_specular_(scene.hasFeature(gpu::kFeatureSpecular)),
-      light_(device, width * height), primary_(device, scene, width * height), paths_(device, scene, width * height, 1),
-      filter_(device, scene, settings, width, height, true), compose_(device, width * height)
+      light_(device, width * height, scene.sendsCaustics()), primary_(device, scene, width * height),
+      paths_(device, scene, width * height, 1), filter_(device, scene, settings, width, height, true),
+      compose_(device, width * height)
 {
 }
 

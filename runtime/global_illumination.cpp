@@ -113,7 +113,7 @@ GlobalIllumination::GlobalIllumination(const Device& device, const SceneGpu& sce
       scratch_(std::max(DirectStage::scratchBytes(scene, width, height, point_count_ / (width * height)),
                         signalBytes(width, height)) +
                kPadding),
-      light_(device, point_count_),
+      light_(device, point_count_, scene.sendsCaustics()),
       primary_(device, scene, width * height, point_count_ > width * height, scratch_.stage()),
       view_scale_(device, scene),
       direct_(device, scene, width, height, point_count_ / (width * height), scratch_.stage()),

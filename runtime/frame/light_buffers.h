@@ -7,7 +7,8 @@
 /// vec3[point_count] each, W/(m^2 sr): what every shading point shows of it. Stages add to what clear() left black.
 struct LightBuffers
 {
-    LightBuffers(const Device& device, uint32_t point_count);
+    /// @param has_caustics whether the scene sends any (SceneGpu::sendsCaustics()): without them nothing reads or writes `caustics`
+    LightBuffers(const Device& device, uint32_t point_count, bool has_caustics);
 
     Buffer emission;     // also of the sky, in mirrors too
     Buffer sharp_direct; // of lights that come from one place: without noise

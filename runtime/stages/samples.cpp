@@ -68,20 +68,31 @@ void SamplesStage::recordSeeds(Recorder& rec, const RayStage& rays, const Input&
 {
     // Fixed point that cannot overflow in any sum that is read, those of the root's children and below.
     gpu::SeedParams seeding{.level = 0,
+                            .last_level = 0,
                             .levels = levels_,
                             .budget = in.budget,
                             .seed = in.seed,
                             .alpha = in.alpha,
                             .variation_scale = 4294967040.0f / (gpu::kMostVariation * float(grid_count_ / 4)),
                             .uniform_ = in.mode == SamplesMode::kUniform};
+    // One group works on this level and on all above.
+    const uint32_t group_level = std::max(levels_, gpu::kGroupLevels + 1) - gpu::kGroupLevels;
     const auto levelThreads = [&](uint32_t level) { return 1u << (2 * (levels_ - level)); };
-    for (seeding.level = 1; seeding.level <= levels_; ++seeding.level)
-        rec.run(mean_, levelThreads(seeding.level), seeding, {{"Points", points_}, {"Nodes", quad_nodes_}});
+    for (uint32_t level = 1; level <= group_level; ++level)
+    {
+        seeding.level = level;
+        seeding.last_level = level == group_level ? levels_ : level;
+        rec.run(mean_, levelThreads(level), seeding, {{"Points", points_}, {"Nodes", quad_nodes_}});
+    }
     rec.run(variation_, point_count_, seeding, {{"Points", points_}, {"Nodes", quad_nodes_}});
     rec.clear(seed_flags_);
-    for (seeding.level = levels_; seeding.level >= 1; --seeding.level)
-        rec.run(budget_, levelThreads(seeding.level), seeding,
+    for (uint32_t level = group_level; level >= 1; --level)
+    {
+        seeding.level = level == group_level ? levels_ : level;
+        seeding.last_level = level;
+        rec.run(budget_, levelThreads(level), seeding,
                 {{"Points", points_}, {"Nodes", quad_nodes_}, {"Budgets", budgets_}, {"Seeds", seed_flags_}});
+    }
     rays.resize(rec, point_size_, point_count_);
     seed_compaction_.record(rec, seed_flags_, seeds_, cluster_size_, point_size_);
     rec.runIndirect(seed_, cluster_size_, NoParams{},

@@ -71,6 +71,7 @@ GPU_SIZE(PointParams, 16);
 struct SeedParams
 {
     uint level;
+    uint last_level; // one group works on all from `level` to this one; more groups on one level alone, which is both
     uint levels;
     uint budget; // of the root
     uint seed;
@@ -78,7 +79,7 @@ struct SeedParams
     float variation_scale;
     uint uniform_; // 1: budget follows the number of points, not their variation
 };
-GPU_SIZE(SeedParams, 28);
+GPU_SIZE(SeedParams, 32);
 
 struct ClusterParams
 {

@@ -41,7 +41,7 @@ protected:
     std::vector<gpu::vec3> filtered(const std::vector<gpu::vec3>& light, uint32_t passes)
     {
         const Buffer input = upload("test.light", light);
-        const LightBuffers buffers(device(), kPixels);
+        const LightBuffers buffers(device(), kPixels, true);
         SignalsStage signals(device(), *scene_, kPixels);
         const DenoiseStage stage(device(), kPixels);
         const FrameInfo frame{.camera = cameraParams(camera_, kWidth, kHeight)};

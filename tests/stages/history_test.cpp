@@ -26,7 +26,7 @@ protected:
         signals_.emplace(device(), *scene_, kPixels);
         history_.emplace(device(), scene_->constants(), kWidth, kHeight);
         primary_.emplace(device(), *scene_, kPixels);
-        light_.emplace(device(), kPixels);
+        light_.emplace(device(), kPixels, true);
     }
 
     /// One frame of a camera that looks through the pixels' centres, with this direct light in all pixels.

@@ -68,7 +68,7 @@ TEST_F(MirrorMotion, IsThatOfTheImage)
     PoseStage pose(device(), *scene, *package);
     SignalsStage signals(device(), *scene, kPixels);
     PrimaryStage primary(device(), *scene, kPixels);
-    LightBuffers light(device(), kPixels);
+    LightBuffers light(device(), kPixels, true);
     const RayStage rays(device(), *scene);
     FrameInfo frame{.camera = cameraParams(camera, kWidth, kHeight), .number = 0};
     frame.camera.jitter = {0.5f, 0.5f};
