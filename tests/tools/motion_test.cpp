@@ -43,6 +43,9 @@ TEST_F(MotionTest, MeasuresASequenceAndKeepsItsReferences)
     EXPECT_EQ(json["schema"], "lumicut-bench-motion/1");
     EXPECT_GT(json["moving_flip"].get<double>(), 0);
     EXPECT_LT(json["moving_flip"].get<double>(), 1);
+    ASSERT_EQ(json["mean_ratio"].size(), 3u);
+    for (const nlohmann::json& ratio : json["mean_ratio"])
+        EXPECT_GT(ratio.get<double>(), 0) << "the frames are lit, and so are their references";
     ASSERT_EQ(json["flicker"].size(), 3u);
     EXPECT_TRUE(json["flicker"][1].is_number());
     EXPECT_TRUE(json["flicker"][2].is_null()) << "three frames, none three apart";
@@ -60,8 +63,8 @@ TEST_F(MotionTest, MeasuresASequenceAndKeepsItsReferences)
     const ProgramRun again = measure("--frames 3 --warm-up 1 --json");
     ASSERT_EQ(again.exit_code, 0) << again.err;
     const auto other = nlohmann::json::parse(again.out);
-    for (const char* field : {"moving_flip", "flicker", "flicker_plain", "flicker_of_references", "flip_of_frames",
-                              "ghost", "ghost_indirect"})
+    for (const char* field : {"moving_flip", "mean_ratio", "flicker", "flicker_plain", "flicker_of_references",
+                              "flip_of_frames", "ghost", "ghost_indirect"})
         EXPECT_EQ(other[field], json[field]) << field;
     EXPECT_EQ(keptCount(), 3u) << "of the same references";
 
