@@ -66,6 +66,13 @@ uint32_t photonCapacity(const Device& device, uint64_t wanted)
     return uint32_t(std::min(wanted, range / std::max(2 * sizeof(gpu::CutNode), sizeof(gpu::PhotonSums))));
 }
 
+/// Scratch memory of the global photon map.
+uint64_t mapBytes(const Device& device, const Settings& settings)
+{
+    const uint32_t capacity = photonCapacity(device, settings.photon_capacity);
+    return PhotonStage::scratchBytes(settings.photon_count, capacity) + PhotonTreeStage::scratchBytes(device, capacity);
+}
+
 uint32_t causticCapacity(const Device& device, const SceneGpu& scene, const Settings& settings)
 {
     return photonCapacity(device, uint64_t(causticPaths(scene, settings)) * kCausticBounces);
@@ -110,20 +117,21 @@ GlobalIllumination::GlobalIllumination(const Device& device, const SceneGpu& sce
       has_caustic_targets_(scene.info().caustic_target_count > 0),
       has_mirrors_(has_caustic_targets_ || scene.hasFeature(gpu::kFeatureTransmission | gpu::kFeatureThin)),
       point_count_(width * height * (splitsMirrors(device, scene, width * height) ? 2 : 1)),
-      scratch_(std::max(DirectStage::scratchBytes(scene, width, height, point_count_ / (width * height)),
+      scratch_(std::max(mapBytes(device, settings) +
+                            DirectStage::scratchBytes(scene, width, height, point_count_ / (width * height)),
                         signalBytes(width, height)) +
                kPadding),
-      light_(device, point_count_, scene.sendsCaustics()),
-      primary_(device, scene, width * height, point_count_ > width * height, scratch_.stage()),
-      view_scale_(device, scene),
-      direct_(device, scene, width, height, point_count_ / (width * height), scratch_.stage()),
       map_scratch_(scratch_.stage()), caustic_scratch_(caustic_pool_.stage()), signals_scratch_(scratch_.stage()),
+      light_(device, point_count_, scene.sendsCaustics()),
       photons_(device, scene, PhotonKind::kGlobal, settings.photon_count,
                photonCapacity(device, settings.photon_capacity), map_scratch_),
       caustic_photons_(device, scene, PhotonKind::kCaustic, causticPaths(scene, settings),
                        causticCapacity(device, scene, settings), caustic_scratch_),
       photon_tree_(device, "photon_tree", photonCapacity(device, settings.photon_capacity), map_scratch_),
-      caustic_tree_(device, "caustic_tree", causticCapacity(device, scene, settings), caustic_scratch_), legs_(device),
+      caustic_tree_(device, "caustic_tree", causticCapacity(device, scene, settings), caustic_scratch_),
+      primary_(device, scene, width * height, point_count_ > width * height, map_scratch_.part()),
+      view_scale_(device, scene),
+      direct_(device, scene, width, height, point_count_ / (width * height), map_scratch_.part()), legs_(device),
       cut_(device, scene, photonCapacity(device, settings.photon_capacity), scratch_.stage()),
       samples_(device, width, height, settings.sample_count),
       gather_(device, scene, settings.sample_count, settings.gather_rays, mostGatherRays(settings), scratch_.stage()),
@@ -154,10 +162,7 @@ const Buffer& GlobalIllumination::record(Recorder& rec, const RayStage& rays, co
     const FramePlan plan = planFrame(settings, traits(), frame);
     gpu::CameraParams placement = frame.camera;
     placement.seed = placement_seed_.value_or(frame.camera.seed);
-    light_.clear(rec, plan.lightTerms());
-    const SurfaceBuffers surface = primary_.record(
-        rec, rays, {.camera = placement, .specular_depth = settings.specular_depth, .emission = light_.emission});
-    view_scale_.record(rec, surface.points, width_ * height_, frame.camera);
+    const SurfaceBuffers surface = primary_.output(placement);
     const Context c{.rec = rec,
                     .rays = rays,
                     .frame = frame,
@@ -167,11 +172,19 @@ const Buffer& GlobalIllumination::record(Recorder& rec, const RayStage& rays, co
                     .point_count = point_count_,
                     .seed = traceSeed(frame.camera.seed, frame.accumulated, gpu::kTermIndirect),
                     .placement_seed = traceSeed(placement.seed, frame.accumulated, gpu::kTermIndirect)};
+    const bool photons_first = plan.makes_map && !needsViewScale(c);
+    bool has_new_photons = photons_first && recordPhotons(c);
+    light_.clear(rec, plan.lightTerms());
+    primary_.record(rec, rays,
+                    {.camera = placement, .specular_depth = settings.specular_depth, .emission = light_.emission});
+    view_scale_.record(rec, surface.points, width_ * height_, frame.camera);
+    if (plan.makes_map && !photons_first)
+        has_new_photons = recordPhotons(c);
     if (plan.direct)
         recordDirect(c);
     if (plan.makes_map)
     {
-        const PhotonTreeStage::Output map = recordMap(c);
+        const PhotonTreeStage::Output map = recordMap(c, has_new_photons);
         const CutStage::Output cut = recordCut(c, map);
         std::optional<InterpolateStage::Sorted> samples;
         if (plan.gathers_at_pixels)
@@ -218,12 +231,11 @@ PhotonStage::Input GlobalIllumination::photonInput(const Context& c) const
             .guide = guide_ ? &*guide_ : nullptr};
 }
 
-PhotonStage::Output GlobalIllumination::emitPhotons(const Context& c)
+/// Photons of a frame that follows another do with the view's scale of that one: they take few threads and fly while the device
+/// traces rays from the eye. The first ones cannot, nor can what trains the guide before them.
+bool GlobalIllumination::needsViewScale(const Context& c) const
 {
-    const PhotonStage::Output stored = photons_.record(c.rec, c.rays, photonInput(c));
-    if (guide_)
-        guide_->learn(c.rec, stored);
-    return stored;
+    return !(c.frame.previous || c.frame.stands()) || (guide_ && !guide_->hasLearned());
 }
 
 /// Trains the guide before the first frame: splats the first hits of gathering rays, then traces photons and learns which of them
@@ -259,27 +271,38 @@ bool GlobalIllumination::isFar(const Context& c) const
     return guide_ && std::hypot(a.x - b.x, a.y - b.y, a.z - b.z) > kGuideReach * view_scale_.lastDistance();
 }
 
-PhotonTreeStage::Output GlobalIllumination::recordMap(const Context& c)
+/// Photons of this frame. @return false: there are none, those of the last map will do
+bool GlobalIllumination::recordPhotons(const Context& c)
 {
     if (isFar(c))
         global_map_.reset();
     if (isThere(c, global_map_, photonInput(c)))
-        return photon_tree_.output();
+        return false;
     made_cut_.reset();
     caustic_map_.reset(); // its tree is sorted as seen from the camera, too
     map_camera_ = c.frame.camera.position;
-    const PhotonStage::Output stored = [&]
+    const auto scope = c.rec.scope("photons");
+    if (guide_)
+        guide_->followLights(c.rec);
+    if (guide_ && !guide_->hasLearned())
+        warmUp(c);
+    photons_.record(c.rec, c.rays, photonInput(c));
+    return true;
+}
+
+PhotonTreeStage::Output GlobalIllumination::recordMap(const Context& c, bool has_new_photons)
+{
+    if (!has_new_photons)
+        return photon_tree_.output();
+    const PhotonStage::Output photons = photons_.output(c.settings.photon_count);
+    if (guide_)
     {
         const auto scope = c.rec.scope("photons");
-        if (guide_)
-            guide_->followLights(c.rec);
-        if (guide_ && !guide_->hasLearned())
-            warmUp(c);
-        return emitPhotons(c);
-    }();
-    legs_.record(c.rec, stored, c.seed);
+        guide_->learn(c.rec, photons);
+    }
+    legs_.record(c.rec, photons, c.seed);
     const auto scope = c.rec.scope("photon tree");
-    return photon_tree_.record(c.rec, stored);
+    return photon_tree_.record(c.rec, photons);
 }
 
 CutStage::Output GlobalIllumination::recordCut(const Context& c, const PhotonTreeStage::Output& map)

@@ -66,10 +66,11 @@ private:
     FrameTraits traits() const;
     void recordDirect(const Context& c);
     PhotonStage::Input photonInput(const Context& c) const;
-    PhotonStage::Output emitPhotons(const Context& c);
+    bool needsViewScale(const Context& c) const;
+    bool recordPhotons(const Context& c);
     void warmUp(const Context& c);
     bool isFar(const Context& c) const;
-    PhotonTreeStage::Output recordMap(const Context& c);
+    PhotonTreeStage::Output recordMap(const Context& c, bool has_new_photons);
     CutStage::Output recordCut(const Context& c, const PhotonTreeStage::Output& map);
     SamplesStage::Input samplesInput(const Context& c) const;
     GatherStage::Input gatherInput(const Context& c) const;
@@ -95,16 +96,16 @@ private:
     uint32_t point_count_; // shading points: one a pixel, or two
     // Stages run one after the other, and share memory for what only they need; those of one Scratch hand some of it on.
     ScratchPool scratch_;
-    ScratchPool caustic_pool_; // caustics need not wait for what is recorded before them
-    LightBuffers light_;
-    PrimaryStage primary_;
-    ViewScaleStage view_scale_;
-    DirectStage direct_;
+    ScratchPool caustic_pool_;              // caustics need not wait for what is recorded before them
     Scratch map_scratch_, caustic_scratch_; // of photons and their tree
     Scratch signals_scratch_;               // from the signals on to the end of the frame
-    std::optional<GuideStage> guide_;       // where it helps
+    LightBuffers light_;
+    std::optional<GuideStage> guide_; // where it helps
     PhotonStage photons_, caustic_photons_;
     PhotonTreeStage photon_tree_, caustic_tree_;
+    PrimaryStage primary_; // beside photons, hence not in their memory
+    ViewScaleStage view_scale_;
+    DirectStage direct_; // likewise
     LegsStage legs_;
     CutStage cut_;
     SamplesStage samples_;

@@ -10,6 +10,11 @@ PhotonTreeStage::PhotonTreeStage(const Device& device, std::string_view name, ui
 {
 }
 
+uint64_t PhotonTreeStage::scratchBytes(const Device& device, uint32_t max_photons)
+{
+    return Tree::scratchBytes(device, max_photons) + max_photons * sizeof(gpu::vec4);
+}
+
 PhotonTreeStage::Output PhotonTreeStage::record(Recorder& rec, const PhotonStage::Output& in) const
 {
     rec.copy(in.size, size_, sizeof(gpu::QueueSize));

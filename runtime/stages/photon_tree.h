@@ -10,6 +10,8 @@ public:
     /// @param scratch that stage's
     PhotonTreeStage(const Device& device, std::string_view name, uint32_t max_photons, const Scratch& scratch = {});
 
+    static uint64_t scratchBytes(const Device& device, uint32_t max_photons);
+
     struct Output
     {
         const Buffer& size;    // gpu::QueueSize: photons

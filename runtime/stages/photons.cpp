@@ -28,6 +28,12 @@ PhotonStage::PhotonStage(const Device& device, const SceneGpu& scene, PhotonKind
 {
 }
 
+uint64_t PhotonStage::scratchBytes(uint32_t max_paths, uint32_t capacity)
+{
+    return max_paths * (sizeof(gpu::PhotonStart) + 2 * sizeof(uint32_t)) +
+           capacity * (sizeof(gpu::Photon) + sizeof(gpu::PhotonTag) + sizeof(uint32_t));
+}
+
 PhotonStage::Output PhotonStage::record(Recorder& rec, const RayStage& rays, const Input& in) const
 {
     const bool caustic = kind_ == PhotonKind::kCaustic;
@@ -67,12 +73,17 @@ PhotonStage::Output PhotonStage::record(Recorder& rec, const RayStage& rays, con
     params.again = 1;
     rec.runIndirect(trace_, again_, params, bindings);
     rays.count(rec, traced_);
+    return output(in.path_count);
+}
+
+PhotonStage::Output PhotonStage::output(uint32_t path_count) const
+{
     return {.photons = photons_,
             .slots = slots_,
             .size = size_,
             .offsets = offsets_,
             .counts = counts_,
             .store = store_,
-            .path_count = in.path_count,
+            .path_count = path_count,
             .capacity = capacity_};
 }

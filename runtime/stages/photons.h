@@ -20,6 +20,8 @@ public:
     PhotonStage(const Device& device, const SceneGpu& scene, PhotonKind kind, uint32_t max_paths, uint32_t capacity,
                 const Scratch& scratch = {});
 
+    static uint64_t scratchBytes(uint32_t max_paths, uint32_t capacity);
+
     struct Input
     {
         uint32_t path_count; // photons to emit, <= max_paths
@@ -32,6 +34,8 @@ public:
     };
     using Output = StoredPhotons; // in scratch memory
     Output record(Recorder& rec, const RayStage& rays, const Input& in) const;
+    /// What the last record() left. @param path_count of its input
+    Output output(uint32_t path_count) const;
     /// gpu::PhotonStore of the last record().
     const Buffer& store() const { return store_; }
 

@@ -56,5 +56,12 @@ SurfaceBuffers PrimaryStage::record(Recorder& rec, const RayStage& rays, const I
                          {"DiffusePoints", diffuse_points_},
                          {"Radiance", in.emission}});
     }
-    return {.points = points_, .diffuse_points = diffuse_points_, .point_count = pixel_count * (splits_ ? 2 : 1)};
+    return output(in.camera);
+}
+
+SurfaceBuffers PrimaryStage::output(const gpu::CameraParams& camera) const
+{
+    return {.points = points_,
+            .diffuse_points = diffuse_points_,
+            .point_count = camera.width * camera.height * (splits_ ? 2 : 1)};
 }

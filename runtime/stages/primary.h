@@ -25,6 +25,8 @@ public:
         const Buffer& emission;   // vec3[points] becomes what the chains themselves find: emitters, sky
     };
     SurfaceBuffers record(Recorder& rec, const RayStage& rays, const Input& in) const;
+    /// What the last record() left, or the next one will.
+    SurfaceBuffers output(const gpu::CameraParams& camera) const;
 
 private:
     bool has_delta_lobes_, splits_;

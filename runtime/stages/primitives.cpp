@@ -90,6 +90,12 @@ RadixSort::RadixSort(const Device& device, std::string_view name, uint32_t max_c
     totals_ = device.array<uint32_t>(fmt::format("{}.totals", name), gpu::kMaxDigits);
 }
 
+uint64_t RadixSort::scratchBytes(uint32_t max_count, uint32_t key_words, Workers workers)
+{
+    return (uint64_t(max_count) * (key_words + 1) + uint64_t(sortWorkerCount(max_count, workers)) * gpu::kMaxDigits) *
+           sizeof(uint32_t);
+}
+
 void RadixSort::record(Recorder& rec, const Buffer& keys, const Buffer& values, const Buffer& size,
                        uint32_t key_bits) const
 {

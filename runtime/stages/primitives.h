@@ -29,6 +29,7 @@ public:
     /// @param key_words 1: uint keys, 2: uvec2 keys with the low word in x
     RadixSort(const Device& device, std::string_view name, uint32_t max_count, uint32_t key_words = 1,
               std::optional<Workers> workers = {}, const Scratch& scratch = {});
+    static uint64_t scratchBytes(uint32_t max_count, uint32_t key_words, Workers workers);
 
     /// Sorts keys[0, count) ascending by their lowest `key_bits` bits, stably, and values with them, in place.
     /// @param keys uint[max_count] or uvec2[max_count]; higher bits may be anything and stay with their keys

@@ -18,6 +18,11 @@ Tree::Tree(const Device& device, std::string_view name, uint32_t max_count, cons
 {
 }
 
+uint64_t Tree::scratchBytes(const Device& device, uint32_t max_count)
+{
+    return RadixSort::scratchBytes(max_count, 1, fastestWorkers(device)) + 2 * max_count * sizeof(uint32_t);
+}
+
 void Tree::record(Recorder& rec, const Buffer& spheres, const Buffer& size) const
 {
     rec.runIndirect(keys_kernel_, size, NoParams{},

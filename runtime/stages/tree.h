@@ -16,6 +16,8 @@ public:
     /// @param name of its buffers, @param max_count spheres at most
     Tree(const Device& device, std::string_view name, uint32_t max_count, const Scratch& scratch = {});
 
+    static uint64_t scratchBytes(const Device& device, uint32_t max_count);
+
     /// Builds the tree over spheres[0, size.count).
     /// @param spheres vec4[max_count]: centre and radius, metres; points have radius 0
     /// @param size gpu::QueueSize, ready for dispatch
