@@ -13,13 +13,6 @@ uint32_t tileCount(uint32_t width, uint32_t height)
     static_assert(kSide * kSide == gpu::kHistoryTileSize);
     return ((width + kSide - 1) / kSide) * ((height + kSide - 1) / kSide);
 }
-uint32_t judgeGroupCount(uint32_t width, uint32_t height)
-{
-    constexpr uint32_t kSide = gpu::kJudgeTilesAlong * gpu::kHistoryTileSide;
-    static_assert(gpu::kJudgeSize ==
-                  gpu::kJudgeTilesAlong * gpu::kJudgeTilesAlong * gpu::kTileBlocks * gpu::kHistoryTerms);
-    return ((width + kSide - 1) / kSide) * ((height + kSide - 1) / kSide);
-}
 } // namespace
 
 HistoryStage::HistoryStage(const Device& device, const SharedConstants& constants, uint32_t width, uint32_t height,
@@ -96,7 +89,7 @@ void HistoryStage::record(Recorder& rec, const Input& in)
              {"Factors", factors},
              {"Tiles", tiles_},
              {"Blocks", blocks_}});
-    rec.run(judge_, judgeGroupCount(camera.width, camera.height) * gpu::kJudgeSize, params,
+    rec.run(judge_, tileCount(camera.width, camera.height) * gpu::kTileBlocks * gpu::kHistoryTerms, params,
             {{"Motions", in.signals.motions},
              {"Guides", in.signals.guides},
              {"Compared", compared_},

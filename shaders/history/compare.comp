@@ -6,7 +6,7 @@
 #include "shaders/lib/signal.glsl"
 
 // Where light has changed since the last frame: what each pixel shows beside what its surface showed before, for its
-// surroundings to compare, and sums of that over tiles, for what is farther away. Of each block of 2 x 2 pixels one is picked for
+// surroundings to compare, and sums of that over tiles, for what is farther away. Of each block of pixels one is picked for
 // history/judge.comp. One thread per pixel, one group per tile.
 
 layout(local_size_x = kHistoryTileSize) in;
@@ -35,7 +35,7 @@ shared uint chosen;                       // the thread whose surface the tile's
 shared SurfaceGuide surfaces[kHistoryTileSize];
 shared LightPair shown[kHistoryTileSize][kHistoryTerms];
 shared TermPairs rows[kHistoryTileSide][kHistoryTerms];
-shared uint firsts[kTileBlocks]; // which of a block's four pixels is the first that shows a surface; 4: none does
+shared uint nearest[kTileBlocks]; // by block, likewise
 
 LightPair pairOf(uvec4 bits, Memory past)
 {
@@ -64,6 +64,13 @@ bool comparePixel(uint pixel, uint thread, out uvec4 memories)
     return motions[pixel].distance < kInfinity;
 }
 
+/// A thread of the tile, and in the bits above the distance of its pixel from the centre of a square.
+uint distanceKey(ivec2 in_square, int side, uint thread)
+{
+    ivec2 off = 2 * in_square - side + 1; // halves of a pixel
+    return uint(off.x * off.x + off.y * off.y) * kHistoryTileSize + thread;
+}
+
 TermPairs addedTo(TermPairs sum, TermPairs more) { return TermPairs(sum.fresh + more.fresh, sum.past + more.past, sum.count + more.count); }
 
 /// Of the pixels in a row that show the surface, or of all rows.
@@ -88,24 +95,24 @@ void main()
     ivec2 here = tileCorner() + inTile(thread);
     uint pixel = uint(here.y) * params.width + uint(here.x);
     ivec2 in_tile = inTile(thread);
-    uint block = blockInTile(in_tile), in_block = uint(in_tile.y & 1) * 2u + uint(in_tile.x & 1);
+    uint block = blockInTile(in_tile);
     if (thread == 0u)
         chosen = ~0u;
     if (thread < kTileBlocks)
-        firsts[thread] = 4u;
+        nearest[thread] = ~0u;
     barrier();
     shown[thread] = LightPair[kHistoryTerms](LightPair(uvec2(0u)), LightPair(uvec2(0u)), LightPair(uvec2(0u)), LightPair(uvec2(0u)));
     uvec4 memories = uvec4(0u);
     if (all(lessThan(here, pictureSize())) && comparePixel(pixel, thread, memories))
     {
-        ivec2 off = 2 * in_tile - int(kHistoryTileSide) + 1; // from the centre, halves of a pixel
-        atomicMin(chosen, uint(off.x * off.x + off.y * off.y) * kHistoryTileSize + thread);
-        atomicMin(firsts[block], in_block);
+        atomicMin(chosen, distanceKey(in_tile, int(kHistoryTileSide), thread));
+        atomicMin(nearest[block], distanceKey(in_tile % int(kBlockSide), int(kBlockSide), thread));
     }
     barrier();
-    bool none = firsts[block] == 4u;
-    if (in_block == (none ? 0u : firsts[block]))
-        blocks[gl_WorkGroupID.x * kTileBlocks + block] = HistoryBlock(none ? kNoPixel : pixel, memories);
+    if (nearest[block] != ~0u && nearest[block] % kHistoryTileSize == thread)
+        blocks[gl_WorkGroupID.x * kTileBlocks + block] = HistoryBlock(pixel, memories);
+    if (thread < kTileBlocks && nearest[thread] == ~0u)
+        blocks[gl_WorkGroupID.x * kTileBlocks + thread].pixel = kNoPixel;
     uint tile = gl_WorkGroupID.x;
     if (chosen == ~0u) // sky
     {

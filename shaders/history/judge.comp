@@ -7,7 +7,7 @@
 #include "shaders/lib/signal.glsl"
 
 // Where light has changed since the last frame: compares what the surface around one pixel of each block shows with what it
-// showed, and says what becomes of the past (lib/reconcile.glsl). One thread per block and term, one group per square of tiles.
+// showed, and says what becomes of the past (lib/reconcile.glsl). One thread per block and term.
 
 layout(local_size_x = kJudgeSize) in;
 layout(push_constant, scalar) uniform Params { HistoryParams params; };
@@ -31,35 +31,7 @@ const int kTilesBeside = 3, kTileStep = 2; // along either axis, and how far apa
 const int kNearSide = 3, kWideSide = kReach + 1, kNearPlaces = kNearSide * kNearSide, kPlaces = kNearPlaces + kWideSide * kWideSide;
 const int kTilesAround = kTilesBeside * kTilesBeside;
 
-// The group's tiles with as many pixels around them as their own look at, and the tiles around them.
-const int kGroupSide = int(kJudgeTilesAlong * kHistoryTileSide), kAreaSide = kGroupSide + 2 * kReach, kAreaSize = kAreaSide * kAreaSide;
-const int kTileReach = kTilesBeside / 2 * kTileStep, kTileAreaSide = int(kJudgeTilesAlong) + 2 * kTileReach, kTileAreaSize = kTileAreaSide * kTileAreaSide;
-const uint kGroupBlocksAlong = kJudgeTilesAlong * kTileBlocksAlong, kGroupBlocks = kGroupBlocksAlong * kGroupBlocksAlong;
-shared vec3 positions[kAreaSize], normals[kAreaSize]; // of SurfaceGuides
-shared uvec2 shown[kHistoryTerms][kAreaSize];         // LightPairs
-shared SurfaceGuide tile_guides[kTileAreaSize];
-shared TermPairs tile_pairs[kHistoryTerms][kTileAreaSize];
-shared uint same_places[kGroupBlocks], same_tiles[kGroupBlocks]; // bits of those that show the surface of a block's pixel
-
-/// The group's first tile.
-ivec2 groupTile()
-{
-    int columns = (tileCounts().x + int(kJudgeTilesAlong) - 1) / int(kJudgeTilesAlong);
-    return ivec2(int(gl_WorkGroupID.x) % columns, int(gl_WorkGroupID.x) / columns) * int(kJudgeTilesAlong);
-}
-int tileIndex(ivec2 tile) { return tile.y * tileCounts().x + tile.x; }
-bool isTile(ivec2 tile) { return all(greaterThanEqual(tile, ivec2(0))) && all(lessThan(tile, tileCounts())); }
-/// A block's tile, in tiles from the group's first one.
-ivec2 tileInGroup(uint block) { return ivec2(block % kGroupBlocksAlong, block / kGroupBlocksAlong) / int(kTileBlocksAlong); }
-
-/// @param at in pixels from the group's first one
-int areaIndex(ivec2 at) { return (at.y + kReach) * kAreaSide + at.x + kReach; }
-/// Tile k around one of the group's.
-int tileAreaIndex(ivec2 in_group, int k)
-{
-    ivec2 at = in_group + ivec2(k % kTilesBeside, k / kTilesBeside) * kTileStep;
-    return at.y * kTileAreaSide + at.x;
-}
+shared uint same_places[kJudgeBlocks], same_tiles[kJudgeBlocks]; // bits of those that show the surface of a block's pixel
 
 /// Place k around a pixel, in pixels from it.
 ivec2 placeAt(int k)
@@ -71,84 +43,72 @@ ivec2 placeAt(int k)
 /// Whether a wide place is a near one, too.
 bool isTwice(int k) { return k >= kNearPlaces && all(lessThanEqual(abs(placeAt(k)), ivec2(1))); }
 
-/// All threads of the group take part; a barrier follows.
-void loadSurroundings()
+/// Tile k around a tile. @return -1: it is outside of the picture
+int tileAround(ivec2 tile, int k)
 {
-    ivec2 corner = groupTile() * int(kHistoryTileSide) - kReach, size = pictureSize();
-    for (int i = int(gl_LocalInvocationID.x); i < kAreaSize; i += int(kJudgeSize))
-    {
-        ivec2 place = corner + ivec2(i % kAreaSide, i / kAreaSide);
-        bool outside = any(lessThan(place, ivec2(0))) || any(greaterThanEqual(place, size));
-        int pixel = outside ? 0 : place.y * size.x + place.x;
-        SurfaceGuide g = loadGuide(pixel);
-        positions[i] = outside ? vec3(kInfinity) : g.position;
-        normals[i] = smoothNormal(g.normals);
-        uvec4 first = texelFetch(Compared, 2 * pixel);
-        shown[0][i] = first.xy;
-        shown[1][i] = first.zw;
-        if (!kSceneHasGlossy && !kSceneHasCaustics)
-            continue;
-        uvec4 second = texelFetch(Compared, 2 * pixel + 1);
-        shown[2][i] = second.xy;
-        shown[3][i] = second.zw;
-    }
-    int k = int(gl_LocalInvocationID.x);
-    if (k < int(kGroupBlocks))
-        same_places[k] = same_tiles[k] = 0u;
-    if (k >= kTileAreaSize)
-        return;
-    ivec2 tile = groupTile() - kTileReach + ivec2(k % kTileAreaSide, k / kTileAreaSide);
-    TilePairs around = tiles[isTile(tile) ? tileIndex(tile) : 0];
-    if (!isTile(tile))
-        around.guide.position = vec3(kInfinity);
-    tile_guides[k] = around.guide;
-    tile_pairs[0][k] = around.direct;
-    tile_pairs[1][k] = around.indirect;
-    tile_pairs[2][k] = around.glossy;
-    tile_pairs[3][k] = around.caustics;
+    ivec2 at = tile + (ivec2(k % kTilesBeside, k / kTilesBeside) - kTilesBeside / 2) * kTileStep;
+    bool outside = any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, tileCounts()));
+    return outside ? -1 : at.y * tileCounts().x + at.x;
 }
 
 /// Finds the places that show the surface of a block's pixel. kHistoryTerms threads per block, each a part of them; a barrier follows.
-/// @param at of the pixel, in pixels from the group's first one
-void findPlaces(uint block, int part, ivec2 at, float footprint)
+void findPlaces(uint block, int part, ivec2 at, ivec2 tile, float footprint)
 {
-    int here = areaIndex(at);
-    SurfaceGuide guide = SurfaceGuide(positions[here], 0u);
-    vec3 normal = normals[here];
+    ivec2 size = pictureSize();
+    SurfaceGuide guide = loadGuide(uint(at.y * size.x + at.x));
+    vec3 normal = smoothNormal(guide.normals);
     uint places = 0u, tiles_ = 0u;
     for (int k = part; k < kPlaces; k += int(kHistoryTerms))
     {
-        int i = areaIndex(at + placeAt(k));
-        if (!isTwice(k) && sameSurface(guide, normal, positions[i], normals[i], footprint))
+        ivec2 place = at + placeAt(k);
+        bool outside = any(lessThan(place, ivec2(0))) || any(greaterThanEqual(place, size));
+        if (!outside && !isTwice(k) && sameSurface(guide, normal, texelFetch(Guides, place.y * size.x + place.x), footprint))
             places |= 1u << k;
     }
     for (int k = part; k < kTilesAround; k += int(kHistoryTerms))
     {
-        SurfaceGuide around = tile_guides[tileAreaIndex(tileInGroup(block), k)];
-        if (sameSurface(guide, normal, around.position, smoothNormal(around.normals), footprint))
+        int around = tileAround(tile, k);
+        SurfaceGuide other = tiles[max(around, 0)].guide;
+        if (around >= 0 && sameSurface(guide, normal, other.position, smoothNormal(other.normals), footprint))
             tiles_ |= 1u << k;
     }
     atomicOr(same_places[block], places);
     atomicOr(same_tiles[block], tiles_);
 }
 
+TermPairs tilePairs(int tile, uint term)
+{
+    if (term == 0u)
+        return tiles[tile].direct;
+    if (term == 1u)
+        return tiles[tile].indirect;
+    if (term == 2u)
+        return tiles[tile].glossy;
+    return tiles[tile].caustics;
+}
+
 /// Compares what the surface shows around a block's pixel with what it showed. One thread per block and term.
 /// @param memory frames and spread of the pixel
-Followed compareTerm(uint block, uint term, ivec2 at, vec2 memory)
+Followed compareTerm(uint block, uint term, ivec2 at, ivec2 tile, vec2 memory)
 {
     Pairs far = kNoPairs, wide = kNoPairs, near = kNoPairs;
     uint places = same_places[block], tiles_ = same_tiles[block];
+    int row = pictureSize().x, here = at.y * row + at.x;
     [[unroll]] for (int k = 0; k < kPlaces; ++k)
     {
         if (!isTwice(k))
-            addPair(wide, (places >> k & 1u) != 0u ? shown[term][areaIndex(at + placeAt(k))] : uvec2(0u));
+        {
+            bool same = (places >> k & 1u) != 0u;
+            uvec4 pairs = texelFetch(Compared, 2 * (same ? here + placeAt(k).y * row + placeAt(k).x : here) + int(term / 2u));
+            addPair(wide, same ? ((term & 1u) == 0u ? pairs.xy : pairs.zw) : uvec2(0u));
+        }
         if (k == kNearPlaces - 1)
             near = wide;
     }
     for (int k = 0; k < kTilesAround; ++k)
         if ((tiles_ >> k & 1u) != 0u)
         {
-            TermPairs around = tile_pairs[term][tileAreaIndex(tileInGroup(block), k)];
+            TermPairs around = tilePairs(tileAround(tile, k), term);
             far.fresh += around.fresh;
             far.past += around.past;
             far.count += around.count;
@@ -159,21 +119,21 @@ Followed compareTerm(uint block, uint term, ivec2 at, vec2 memory)
 
 void main()
 {
-    uint block = gl_LocalInvocationID.x % kGroupBlocks, term = gl_LocalInvocationID.x / kGroupBlocks;
-    ivec2 tile = groupTile() + tileInGroup(block), in_tile = 2 * ivec2(block % kGroupBlocksAlong, block / kGroupBlocksAlong) % int(kHistoryTileSide);
-    bool is_there = isTile(tile);
-    uint stored = (is_there ? uint(tileIndex(tile)) : 0u) * kTileBlocks + blockInTile(in_tile);
-    HistoryBlock b = blocks[stored];
-    loadSurroundings();
-    barrier();
+    uint thread = gl_LocalInvocationID.x, block = thread % kJudgeBlocks, term = thread / kJudgeBlocks;
+    if (thread < kJudgeBlocks)
+        same_places[thread] = same_tiles[thread] = 0u;
+    uint stored = gl_WorkGroupID.x * kJudgeBlocks + block, block_count = uint(tileCounts().x * tileCounts().y) * kTileBlocks;
+    bool is_there = stored < block_count;
+    HistoryBlock b = blocks[is_there ? stored : 0u];
     bool is_known = is_there && b.pixel != kNoPixel;
     uint pixel = is_known ? b.pixel : 0u, row = quotient(pixel, params.width);
-    ivec2 at = is_known ? ivec2(pixel - row * params.width, row) - groupTile() * int(kHistoryTileSide) : ivec2(0);
+    ivec2 at = ivec2(pixel - row * params.width, row), tile = at / int(kHistoryTileSide);
+    barrier();
     if (is_known)
-        findPlaces(block, int(term), at, footprintAt(motions[pixel]));
+        findPlaces(block, int(term), at, tile, footprintAt(motions[pixel]));
     barrier();
     vec2 memory = unpackHalf2x16(b.memories[term]);
-    Followed followed = is_known && memory.x > 0.0 && sceneHas(term) ? compareTerm(block, term, at, memory) : kUnknown;
+    Followed followed = is_known && memory.x > 0.0 && sceneHas(term) ? compareTerm(block, term, at, tile, memory) : kUnknown;
     uint i = stored * kHistoryTerms + term;
     if (is_there)
         followed_terms[i] = packFollowed(followed, hash(params.seed, ~i));

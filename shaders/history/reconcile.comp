@@ -43,7 +43,7 @@ uint blockLike(uint pixel, ivec2 here)
     uint found = kNoPixel;
     for (int k = 0;;) // tests at its end: see lib/bvh.glsl why
     {
-        ivec2 step_ = k == 0 ? ivec2(0) : (1 - (k & 1) * 2) * (k < 3 ? ivec2(2, 0) : ivec2(0, 2));
+        ivec2 step_ = k == 0 ? ivec2(0) : (1 - (k & 1) * 2) * int(kBlockSide) * (k < 3 ? ivec2(1, 0) : ivec2(0, 1));
         ivec2 place = clamp(here + step_, ivec2(0), size - 1), tile = place / int(kHistoryTileSide);
         uint block = uint(tile.y * tileCounts().x + tile.x) * kTileBlocks + blockInTile(place % int(kHistoryTileSide));
         uint other = blocks[block].pixel;

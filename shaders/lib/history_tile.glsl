@@ -16,6 +16,6 @@ ivec2 tilePlace()
 ivec2 tileCorner() { return tilePlace() * int(kHistoryTileSide); }
 ivec2 inTile(uint thread) { return ivec2(thread % kHistoryTileSide, thread / kHistoryTileSide); }
 /// The block of a tile that a pixel of the tile is in.
-uint blockInTile(ivec2 in_tile) { return uint(in_tile.y / 2) * kTileBlocksAlong + uint(in_tile.x / 2); }
+uint blockInTile(ivec2 in_tile) { return uint(in_tile.y / int(kBlockSide)) * kTileBlocksAlong + uint(in_tile.x / int(kBlockSide)); }
 
 #endif
