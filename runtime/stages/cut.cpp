@@ -5,7 +5,7 @@ CutStage::CutStage(const Device& device, const SceneGpu& scene, uint32_t max_pho
       coarse_(device.kernel("cut/coarse", scene.constants(), {climbConstant(device)})),
       select_(device.kernel("cut/select")), refine_(device.kernel("cut/refine")),
       reorder_(device.kernel("cut/reorder")), build_leaves_(device.kernel("cut/build_leaves")),
-      probe_(device.kernel("cut/probe")), estimate_coverage_(device.kernel("cut/estimate_coverage", scene.constants())),
+      probe_(device.kernel("cut/probe", scene.constants())), keys_(device.kernel("cut/keys")),
       sample_direction_(device.kernel("cut/sample_direction", scene.constants())),
       compaction_(device, "cut.compaction", 2 * max_photons), tree_(device, "cut.tree", max_photons, scratch),
       sums_(device.array<gpu::PhotonSums>("cut.sums", max_photons, scratch)),
@@ -23,8 +23,7 @@ CutStage::CutStage(const Device& device, const SceneGpu& scene, uint32_t max_pho
       nodes_(device.texelArray<gpu::CutNode>("cut.nodes", max_photons)),
       unsorted_directions_(device.array<uint32_t>("cut.unsorted_directions", max_photons, scratch)),
       directions_(device.array<uint32_t>("cut.directions", max_photons)),
-      probes_(device, "cut.probes", gpu::kCutProbeCapacity, scratch),
-      hits_(device.texelArray<gpu::Hit>("cut.hits", gpu::kCutProbeCapacity, scratch))
+      probe_size_(device.array<gpu::QueueSize>("cut.probe_size", 1))
 {
 }
 
@@ -115,6 +114,9 @@ CutStage::Output CutStage::record(Recorder& rec, const RayStage& rays, const Pho
     }
     compaction_.record(rec, members_, ids_, size_, id_count_);
     const bool is_probed = in.probes > 0 && in.mode != CutMode::kNearest;
+    rec.runIndirect(
+        keys_, size_, NoParams{},
+        {{"Size", size_}, {"Ids", ids_}, {"Finals", finals_}, {"Keys", tree_.keys()}, {"Order", tree_.order()}});
     rec.runIndirect(sample_direction_, size_, gpu::SampleDirectionParams{.seed = in.seed, .is_probed = is_probed},
                     {{"CutSize", size_},
                      {"Ids", ids_},
@@ -125,27 +127,23 @@ CutStage::Output CutStage::record(Recorder& rec, const RayStage& rays, const Pho
                      {"Finals", finals_},
                      {"Spheres", spheres_},
                      {"Directions", unsorted_directions_}});
-    tree_.record(rec, spheres_, size_);
-    rec.runIndirect(reorder_, size_, NoParams{},
+    tree_.recordKeyed(rec, spheres_, size_, gpu::kTreeKeyBits);
+    check(in.probes + in.rim_probes <= gpu::kMostProbes, "{} and {} probe rays", in.probes, in.rim_probes);
+    const gpu::ProbeParams probing{.ray_count = in.probes, .rim_count = in.rim_probes, .seed = in.seed};
+    rays.reset(rec, probe_size_); // an empty cut starts no thread that would set it
+    rec.runIndirect(reorder_, size_, probing,
                     {{"Size", size_},
                      {"Ids", ids_},
                      {"Order", tree_.order()},
                      {"Finals", finals_},
                      {"Directions", unsorted_directions_},
                      {"Nodes", nodes_},
-                     {"NodeDirections", directions_}});
+                     {"NodeDirections", directions_},
+                     {"ProbeSize", probe_size_}});
     if (is_probed)
-        recordProbes(rec, rays, in);
+    {
+        rays.count(rec, probe_size_);
+        rec.runIndirect(probe_, probe_size_, probing, {{"Size", size_}, {"Nodes", nodes_}});
+    }
     return output();
-}
-
-void CutStage::recordProbes(Recorder& rec, const RayStage& rays, const Input& in) const
-{
-    const gpu::ProbeParams params{.ray_count = in.probes, .rim_count = in.rim_probes, .seed = in.seed};
-    rays.reset(rec, probes_.size); // an empty cut starts no thread that would set it
-    rec.runIndirect(probe_, size_, params,
-                    {{"Size", size_}, {"Nodes", nodes_}, {"Queue", probes_.size}, {"Rays", probes_.rays}});
-    rays.closest(rec, probes_, hits_, in.seed);
-    rec.runIndirect(estimate_coverage_, size_, params,
-                    {{"Size", size_}, {"Rays", probes_.rays}, {"Hits", hits_}, {"Nodes", nodes_}});
 }

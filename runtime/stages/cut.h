@@ -48,14 +48,10 @@ public:
     Output output() const { return {.size = size_, .nodes = nodes_, .directions = directions_, .tree = tree_}; }
 
 private:
-    void recordProbes(Recorder& rec, const RayStage& rays, const Input& in) const;
-
-    Kernel reduce_upward_, coarse_, select_, refine_, reorder_, build_leaves_, probe_, estimate_coverage_,
-        sample_direction_;
+    Kernel reduce_upward_, coarse_, select_, refine_, reorder_, build_leaves_, probe_, keys_, sample_direction_;
     Compaction compaction_;
     Tree tree_;
     Buffer sums_, arrivals_, id_count_, divided_, work_, next_work_, work_size_, next_work_size_, members_, finals_;
     Buffer size_, ids_, spheres_, nodes_, unsorted_directions_, directions_;
-    RayQueue probes_;
-    Buffer hits_;
+    Buffer probe_size_; // gpu::QueueSize: threads of probe_, and how many rays they trace
 };

@@ -67,6 +67,10 @@ struct SampleDirectionParams
 };
 GPU_SIZE(SampleDirectionParams, 8);
 
+// A node's probe rays are the work of so many threads together.
+GPU_CONST uint kProbeThreads = 32u;
+GPU_CONST uint kMostProbes = 128u; // of a node, those to its rim included
+
 struct ProbeParams
 {
     uint ray_count; // of a node

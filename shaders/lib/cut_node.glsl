@@ -30,7 +30,7 @@ bool isClear(CutNode node) { return (node.normal_and_eye & kCutIsClear) != 0u; }
 
 /// Weight of a node at a surface point x with normal n: 1 at its centre, 0 from its support on and on other surfaces. What lies
 /// off the node's plane counts as the place of the plane that it hides from the eye, and less: rays from the eye to the disc then
-/// meet all that has any weight, each piece of it once (estimate_coverage.comp).
+/// meet all that has any weight, each piece of it once (cut/probe.comp).
 float cutWeight(CutNode node, vec3 x, vec3 n)
 {
     vec3 normal = cutNormal(node), d = x - node.center;
