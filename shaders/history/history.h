@@ -56,8 +56,7 @@ GPU_CONST uint kJudgeSize = kJudgeBlocks * kHistoryTerms;
 
 struct HistoryBlock // tile after tile; within one row by row
 {
-    uint
-        pixel; // of the picture, that is compared: of those that show a surface the one nearest to the block's centre; kNoPixel: none does
+    uint pixel;     // that is compared, the nearest to the centre that shows a surface; kNoPixel: none does
     uvec4 memories; // by term, what it remembers: frames and spread, halves
 };
 GPU_SIZE(HistoryBlock, 20);
